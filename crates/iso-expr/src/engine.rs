@@ -1,0 +1,126 @@
+//! What every engine offers: kernels over a point, over a batch of points, and over a batch of boxes.
+//!
+//! A [`Program`] says what is computed, the kernel's kind over what. All engines agree bit for bit on every kernel and
+//! every input, any NaN counting as equal to any other.
+
+use std::sync::Arc;
+
+use thiserror::Error;
+
+use crate::{Decoration, Program};
+
+/// Turns programs into kernels. The interpreter is one engine, native code another.
+pub trait Engine: Send + Sync {
+    /// The engine's name on the command line and in reports.
+    fn name(&self) -> &'static str;
+
+    /// A kernel over one point.
+    ///
+    /// # Errors
+    /// When the engine cannot compile the program.
+    fn point(&self, program: &Program) -> Result<Arc<dyn PointKernel>, CompileError>;
+
+    /// A kernel over batches of points.
+    ///
+    /// # Errors
+    /// When the engine cannot compile the program.
+    fn batch(&self, program: &Program) -> Result<Arc<dyn BatchKernel>, CompileError>;
+
+    /// A kernel over batches of boxes.
+    ///
+    /// # Errors
+    /// When the engine cannot compile the program.
+    fn boxes(&self, program: &Program) -> Result<Arc<dyn BoxKernel>, CompileError>;
+}
+
+/// Evaluates a program at one point. Immutable, so that threads share it.
+pub trait PointKernel: Send + Sync {
+    /// Writes every output of the program at (x, y, z) into `values`, whose length is their number.
+    ///
+    /// # Panics
+    /// When `values` has another length.
+    fn evaluate(&self, scratch: &mut Scratch, x: f64, y: f64, z: f64, values: &mut [f64]);
+}
+
+/// Evaluates a program at many points. Immutable, so that threads share it.
+pub trait BatchKernel: Send + Sync {
+    /// Writes every output of the program at every point into `values`: output `k` at point `i` stands at `k·n + i`,
+    /// where `n` is the number of points.
+    ///
+    /// # Panics
+    /// When the lengths do not fit each other.
+    fn evaluate(&self, scratch: &mut Scratch, points: Points<'_>, values: &mut [f64]);
+}
+
+/// Encloses a program's range over many boxes. Immutable, so that threads share it.
+pub trait BoxKernel: Send + Sync {
+    /// Writes a decorated enclosure of every output over every box into `enclosures`, laid out as for [`BatchKernel`].
+    ///
+    /// # Panics
+    /// When the lengths do not fit each other.
+    fn evaluate(&self, scratch: &mut Scratch, boxes: Boxes<'_>, enclosures: Enclosures<'_>);
+}
+
+/// A batch of points, coordinate by coordinate. All three slices are equally long.
+#[derive(Clone, Copy, Debug)]
+pub struct Points<'a> {
+    /// The x coordinate of each point.
+    pub x: &'a [f64],
+    /// The y coordinate of each point.
+    pub y: &'a [f64],
+    /// The z coordinate of each point.
+    pub z: &'a [f64],
+}
+
+/// A batch of boxes, end by end. All six slices are equally long; a box with a NaN end is empty.
+#[derive(Clone, Copy, Debug)]
+pub struct Boxes<'a> {
+    /// The lower ends along x, y and z.
+    pub lo: [&'a [f64]; 3],
+    /// The upper ends along x, y and z.
+    pub hi: [&'a [f64]; 3],
+}
+
+/// Room for decorated enclosures, end by end. All three slices are equally long; an empty enclosure has NaN ends.
+#[derive(Debug)]
+pub struct Enclosures<'a> {
+    /// Lower ends.
+    pub lo: &'a mut [f64],
+    /// Upper ends.
+    pub hi: &'a mut [f64],
+    /// Decorations.
+    pub decoration: &'a mut [Decoration],
+}
+
+/// Working memory for kernels, one for each thread, reused from call to call. It carries no results.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    /// Registers of the interpreter's point and batch kernels.
+    pub(crate) values: Vec<f64>,
+    /// Registers of the interpreter's box kernels.
+    pub(crate) enclosures: Vec<crate::Decorated>,
+}
+
+/// Why a program could not be compiled.
+#[derive(Clone, Debug, Error)]
+#[non_exhaustive]
+pub enum CompileError {
+    /// The program is larger than the engine's limit.
+    #[error("the formula takes {given} operations; the {engine} engine allows {allowed}")]
+    TooLarge {
+        /// The engine's name.
+        engine: &'static str,
+        /// The program's operations.
+        given: usize,
+        /// The engine's limit.
+        allowed: usize,
+    },
+    /// The code generator refused the program or the machine.
+    #[error("the {engine} engine cannot compile this formula: {reason}")]
+    Backend {
+        /// The engine's name.
+        engine: &'static str,
+        /// What it said.
+        reason: String,
+    },
+}

@@ -1,0 +1,19 @@
+//! Formulas F(x, y, z): text, programs, derivatives, intervals and the interpreter.
+//!
+//! ```text
+//! text ─ parse → Ast ─ lower → Program ─ simplify, differentiate, substitute → Program ─ Engine → kernels
+//! ```
+//!
+//! [`Operation`] is the one table of operations; everything else in this crate and in the engines reads it.
+
+mod constant;
+pub mod engine;
+pub mod interval;
+mod operation;
+pub mod program;
+
+pub use constant::Constant;
+pub use engine::{BatchKernel, BoxKernel, CompileError, Engine, PointKernel, Scratch};
+pub use interval::{Decorated, Decoration, Extension, Interval};
+pub use operation::{Chain, Operation, Value};
+pub use program::{Axis, Node, NodeId, Program};

@@ -1,0 +1,99 @@
+//! Values of operations in IEEE 754 doubles: what every engine must give, bit for bit.
+//!
+//! The functions have the C calling convention so that native code calls the very same ones.
+
+/// The value of an operation, by arity.
+#[derive(Clone, Copy, Debug)]
+pub enum Value {
+    /// Of one operand.
+    Unary(extern "C" fn(f64) -> f64),
+    /// Of two operands.
+    Binary(extern "C" fn(f64, f64) -> f64),
+    /// Of three operands.
+    Ternary(extern "C" fn(f64, f64, f64) -> f64),
+}
+
+macro_rules! values {
+    ($($function:ident($($operand:ident),*) = $value:expr;)*) => {
+        $(pub(super) extern "C" fn $function($($operand: f64),*) -> f64 { $value })*
+    };
+}
+
+values! {
+    add(a, b) = a + b;
+    subtract(a, b) = a - b;
+    multiply(a, b) = a * b;
+    divide(a, b) = a / b;
+    negate(a) = -a;
+    absolute(a) = a.abs();
+    sign(a) = if a > 0.0 { 1.0 } else if a < 0.0 { -1.0 } else { a };
+    minimum(a, b) = if a.is_nan() || a < b { a } else { b };
+    maximum(a, b) = if a.is_nan() || a > b { a } else { b };
+    square_root(a) = a.sqrt();
+    cube_root(a) = core_math::cbrt(a);
+    // The C function gives infinity for an infinite and a NaN side; an undefined side is undefined here.
+    hypotenuse(a, b) = if a.is_nan() || b.is_nan() { f64::NAN } else { core_math::hypot(a, b) };
+    exp(a) = core_math::exp(a);
+    exp2(a) = core_math::exp2(a);
+    exp_m1(a) = core_math::expm1(a);
+    ln(a) = core_math::log(a);
+    log2(a) = core_math::log2(a);
+    log10(a) = core_math::log10(a);
+    ln_1p(a) = core_math::log1p(a);
+    sin(a) = core_math::sin(a);
+    cos(a) = core_math::cos(a);
+    tan(a) = core_math::tan(a);
+    asin(a) = core_math::asin(a);
+    acos(a) = core_math::acos(a);
+    atan(a) = core_math::atan(a);
+    atan2(a, b) = core_math::atan2(a, b);
+    sinh(a) = core_math::sinh(a);
+    cosh(a) = core_math::cosh(a);
+    tanh(a) = core_math::tanh(a);
+    asinh(a) = core_math::asinh(a);
+    acosh(a) = core_math::acosh(a);
+    atanh(a) = core_math::atanh(a);
+    floor(a) = a.floor();
+    ceil(a) = a.ceil();
+    round(a) = a.round_ties_even();
+    truncate(a) = a.trunc();
+    less(a, b) = truth(a, b, a < b);
+    less_or_equal(a, b) = truth(a, b, a <= b);
+    equal(a, b) = truth(a, b, a == b);
+    select(a, b, c) = if a.is_nan() { a } else if a != 0.0 { b } else { c };
+}
+
+/// A comparison that is undefined where one of its sides is.
+fn truth(a: f64, b: f64, holds: bool) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { f64::from(u8::from(holds)) }
+}
+
+/// `base` multiplied by itself, by squaring from the exponent's lowest bit up: x⁶ = x²·x⁴.
+///
+/// This order is the definition; engines that write the products out follow it.
+pub(super) extern "C" fn integer_power(base: f64, exponent: f64) -> f64 {
+    let mut remaining = exponent as u32;
+    let mut square = base;
+    let mut product = None;
+    loop {
+        if remaining & 1 == 1 {
+            product = Some(product.map_or(square, |product| product * square));
+        }
+        remaining >>= 1;
+        if remaining == 0 {
+            return product.unwrap_or(1.0);
+        }
+        square *= square;
+    }
+}
+
+/// The C function, but undefined for every negative base, and for an undefined base or exponent.
+pub(super) extern "C" fn power(base: f64, exponent: f64) -> f64 {
+    if base.is_nan() || exponent.is_nan() || base < 0.0 { f64::NAN } else { core_math::pow(base, exponent) }
+}
+
+/// The exact remainder, moved to the sign of `b`.
+pub(super) extern "C" fn modulo(a: f64, b: f64) -> f64 {
+    let remainder = a % b;
+    if remainder != 0.0 && (remainder < 0.0) != (b < 0.0) { remainder + b } else { remainder }
+}

@@ -1,0 +1,150 @@
+//! Programs: hash-consed, straight-line descriptions of what is to be evaluated.
+
+use std::collections::HashMap;
+
+use crate::{Constant, Operation};
+
+/// A coordinate axis, and the variable that runs along it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Axis {
+    /// The variable `x`.
+    X,
+    /// The variable `y`.
+    Y,
+    /// The variable `z`.
+    Z,
+}
+
+impl Axis {
+    /// All axes, in the order of the arguments of F.
+    pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
+
+    /// The variable's name in formulas.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+        }
+    }
+}
+
+/// The place of a node in its [`Program`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct NodeId(u32);
+
+impl NodeId {
+    /// The index into [`Program::nodes`].
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// One value of a program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Node {
+    /// An argument of F.
+    Variable(Axis),
+    /// A constant.
+    Constant(Constant),
+    /// An operation on earlier nodes. Only the first [`Operation::arity`] operands count; the rest repeat the first one.
+    Apply(Operation, [NodeId; 3]),
+}
+
+impl Node {
+    /// The nodes that this one is computed from.
+    pub fn operands(&self) -> &[NodeId] {
+        match self {
+            Self::Variable(_) | Self::Constant(_) => &[],
+            Self::Apply(operation, operands) => &operands[..operation.arity()],
+        }
+    }
+}
+
+/// Nodes in an order in which each stands after its operands, no two of them equal, and some of them named as outputs.
+///
+/// The order of evaluation, and with it every rounding, is part of the program: engines compute just the operations that
+/// stand here, so all of them agree bit for bit.
+#[derive(Clone, Debug, Default)]
+pub struct Program {
+    nodes: Vec<Node>,
+    places: HashMap<Node, NodeId>,
+    outputs: Vec<NodeId>,
+}
+
+impl Program {
+    /// A program without nodes or outputs.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// All nodes, operands before the nodes that use them.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// The node at `id`.
+    pub fn node(&self, id: NodeId) -> Node {
+        self.nodes[id.index()]
+    }
+
+    /// What the program computes, in order.
+    pub fn outputs(&self) -> &[NodeId] {
+        &self.outputs
+    }
+
+    /// Names what the program computes.
+    pub fn set_outputs(&mut self, outputs: Vec<NodeId>) {
+        assert!(outputs.iter().all(|id| id.index() < self.nodes.len()), "an output is not in this program");
+        self.outputs = outputs;
+    }
+
+    /// The nodes with their ids, in order.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = (NodeId, &Node)> + ExactSizeIterator {
+        self.nodes.iter().enumerate().map(|(index, node)| (NodeId(index as u32), node))
+    }
+
+    /// How many operations one evaluation takes.
+    pub fn operations(&self) -> usize {
+        self.nodes.iter().filter(|node| matches!(node, Node::Apply(..))).count()
+    }
+
+    /// The argument of F along `axis`.
+    pub fn variable(&mut self, axis: Axis) -> NodeId {
+        self.intern(Node::Variable(axis))
+    }
+
+    /// A constant.
+    pub fn constant(&mut self, constant: Constant) -> NodeId {
+        self.intern(Node::Constant(constant))
+    }
+
+    /// The double `value`, exactly.
+    pub fn literal(&mut self, value: f64) -> NodeId {
+        self.constant(Constant::exact(value))
+    }
+
+    /// An operation on nodes of this program. Nothing is simplified; an equal node is reused.
+    ///
+    /// # Panics
+    /// When the number of operands is not the operation's arity.
+    pub fn apply(&mut self, operation: Operation, operands: &[NodeId]) -> NodeId {
+        assert_eq!(operands.len(), operation.arity(), "{operation:?} takes {} operands", operation.arity());
+        let operand = |place: usize| *operands.get(place).unwrap_or(&operands[0]);
+        self.intern(Node::Apply(operation, [operand(0), operand(1), operand(2)]))
+    }
+
+    /// `base` multiplied by itself, `exponent` factors in all.
+    pub fn integer_power(&mut self, base: NodeId, exponent: u32) -> NodeId {
+        let exponent = self.literal(f64::from(exponent));
+        self.apply(Operation::IntegerPower, &[base, exponent])
+    }
+
+    fn intern(&mut self, node: Node) -> NodeId {
+        *self.places.entry(node).or_insert_with(|| {
+            let id = u32::try_from(self.nodes.len()).expect("formulas are limited to far fewer nodes");
+            self.nodes.push(node);
+            NodeId(id)
+        })
+    }
+}

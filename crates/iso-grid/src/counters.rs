@@ -1,0 +1,44 @@
+//! What the work of a method is measured in.
+
+/// Counts of work, added up over rays and threads. A method leaves at zero what it does not do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Rays asked about.
+    pub rays: u64,
+    /// Rays that met the region.
+    pub rays_in_region: u64,
+    /// Evaluations of F at points while preprocessing.
+    pub preprocess_evaluations: u64,
+    /// Evaluations of F at points while tracing, samples and root finding alike.
+    pub trace_evaluations: u64,
+    /// Evaluations of F and its gradient at points.
+    pub gradient_evaluations: u64,
+    /// Enclosures of F, or of F and its gradient, over boxes.
+    pub box_evaluations: u64,
+    /// Cells that rays walked through.
+    pub steps: u64,
+    /// Cells of the grid.
+    pub cells: u64,
+    /// Cells whose corners differ in sign.
+    pub existence_cells: u64,
+    /// Cells examined again because they border an existence cell.
+    pub examined_cells: u64,
+    /// Examined cells that turned out to be existence cells.
+    pub rescued_cells: u64,
+}
+
+impl std::ops::AddAssign for Counters {
+    fn add_assign(&mut self, other: Self) {
+        self.rays += other.rays;
+        self.rays_in_region += other.rays_in_region;
+        self.preprocess_evaluations += other.preprocess_evaluations;
+        self.trace_evaluations += other.trace_evaluations;
+        self.gradient_evaluations += other.gradient_evaluations;
+        self.box_evaluations += other.box_evaluations;
+        self.steps += other.steps;
+        self.cells += other.cells;
+        self.existence_cells += other.existence_cells;
+        self.examined_cells += other.examined_cells;
+        self.rescued_cells += other.rescued_cells;
+    }
+}

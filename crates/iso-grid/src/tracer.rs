@@ -1,0 +1,50 @@
+//! What every method of intersection offers.
+
+use glam::DVec3;
+use iso_expr::Scratch;
+
+use crate::{Counters, Ray, Span};
+
+/// A point of the surface on a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Where on the ray, inside `bracket`.
+    pub t: f64,
+    /// A stretch that holds the root. Its meaning is the method's: between samples of unlike sign, or a proven enclosure.
+    pub bracket: Span,
+    /// The unit vector along the gradient of F, towards larger F whichever way the ray comes; NaN where there is none.
+    pub normal: DVec3,
+}
+
+/// How the search for the first root along a ray ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// The ray crosses the surface.
+    Hit(Hit),
+    /// The ray meets the surface without a proven crossing: a root of even multiplicity, a plateau.
+    Touch(Hit),
+    /// The method found no root. Whether that is proven is the method's to say.
+    Miss,
+    /// The method could not decide what happens in this stretch.
+    Undecided(Span),
+}
+
+/// A method of intersection, ready for its surface and region.
+pub trait Tracer: Send + Sync {
+    /// Says for each ray how the search along it ended. Both slices are equally long.
+    ///
+    /// The outcome of a ray depends on that ray alone, not on its neighbours in the slice, nor on earlier calls.
+    fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]);
+
+    /// What preprocessing took.
+    fn preprocessing(&self) -> Counters;
+}
+
+/// A thread's working memory and counts, reused from call to call. It carries no results but its counters.
+#[derive(Debug, Default)]
+pub struct Workspace {
+    /// For the kernels.
+    pub scratch: Scratch,
+    /// What was done with this workspace so far.
+    pub counters: Counters,
+}

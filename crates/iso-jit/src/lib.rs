@@ -1,0 +1,1 @@
+//! Compiles programs of iso-expr to native code with Cranelift.

@@ -1,0 +1,1 @@
+//! Scenes, cameras, shading and pictures of F(x, y, z) = C.
