@@ -1,6 +1,5 @@
 //! What every method of intersection offers.
 
-use glam::DVec3;
 use iso_expr::Scratch;
 
 use crate::{Counters, Ray, Span};
@@ -12,8 +11,6 @@ pub struct Hit {
     pub t: f64,
     /// A stretch that holds the root. Its meaning is the method's: between samples of unlike sign, or a proven enclosure.
     pub bracket: Span,
-    /// The unit vector along the gradient of F, towards larger F whichever way the ray comes; NaN where there is none.
-    pub normal: DVec3,
 }
 
 /// How the search for the first root along a ray ended.
