@@ -5,12 +5,14 @@
 //! for every [`Ray`] how its search for the first root inside the [`Region`] ended, an [`Outcome`].
 
 mod counters;
+mod normal;
 mod ray;
 mod region;
 mod surface;
 mod tracer;
 
 pub use counters::Counters;
+pub use normal::normals;
 pub use ray::{Ray, Span};
 pub use region::{Region, RegionError};
 pub use surface::Surface;

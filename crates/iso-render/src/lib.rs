@@ -1,1 +1,20 @@
 //! Scenes, cameras, shading and pictures of F(x, y, z) = C.
+//!
+//! A [`Camera`] turns pixels into rays, [`render`] asks a tracer about them tile by tile on all cores, [`Shading`] turns
+//! what was found into colours, and the resulting [`Picture`] writes itself to files.
+
+mod camera;
+mod color;
+mod encode;
+mod picture;
+mod render;
+mod shading;
+mod size;
+
+pub use camera::{Camera, CameraError, Projection, View};
+pub use color::{Color, color_from_srgb};
+pub use encode::{EncodeError, ImageFormat};
+pub use picture::{Layers, Picture, Status, StatusCounts};
+pub use render::{Progress, RenderError, Scene, render};
+pub use shading::Shading;
+pub use size::{Size, SizeError};

@@ -1,0 +1,278 @@
+//! Cameras: which ray belongs to which pixel.
+//!
+//! z points up. Orbiting cameras look at the middle of the region; yaw 0 and pitch 0 look along +y with x to the right.
+
+use glam::DVec3;
+use iso_grid::{Ray, Region};
+use thiserror::Error;
+
+use crate::Size;
+
+/// Where the camera stands and what it looks at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum View {
+    /// On a sphere around the middle of the region, looking at it.
+    Orbit {
+        /// Degrees around the z axis, counter-clockwise seen from above; 0 stands on the −y side.
+        yaw: f64,
+        /// Degrees above the xy plane; 90 looks straight down.
+        pitch: f64,
+        /// Distance from the middle, in world units; by default as far as the picture needs to show the whole region.
+        distance: Option<f64>,
+    },
+    /// Anywhere, looking anywhere.
+    LookAt {
+        /// Where the camera stands.
+        eye: DVec3,
+        /// The point in the middle of the picture.
+        target: DVec3,
+        /// A direction that points up in the picture; it need not be perpendicular to the line of sight.
+        up: DVec3,
+    },
+}
+
+/// How space is projected onto the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Rays spread from the eye.
+    Perspective {
+        /// The angle between the upper and the lower edge, in degrees, between 0 and 180.
+        fov: f64,
+    },
+    /// Parallel rays.
+    Orthographic {
+        /// The width of the picture in world units; by default as wide as the whole region needs.
+        view_width: Option<f64>,
+    },
+}
+
+impl View {
+    /// From the front, a little to the right and above.
+    pub const DEFAULT: Self = Self::Orbit { yaw: 30.0, pitch: 25.0, distance: None };
+}
+
+impl Projection {
+    /// A perspective like that of a short telephoto lens.
+    pub const DEFAULT: Self = Self::Perspective { fov: 30.0 };
+}
+
+/// Why a camera cannot be set up.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum CameraError {
+    /// A number is out of its range.
+    #[error("{what} must be {range}, not {given}")]
+    OutOfRange {
+        /// What the number is.
+        what: &'static str,
+        /// What it may be.
+        range: &'static str,
+        /// What it was.
+        given: f64,
+    },
+    /// Eye and target are the same point, or too near to give a direction.
+    #[error("the eye and the target are at the same place, so there is no direction to look in")]
+    NoDirection,
+    /// The up direction is zero or along the line of sight.
+    #[error("the up direction is zero or runs along the line of sight; choose one across it")]
+    NoUp,
+}
+
+/// Rays for the pixels of a picture of given size.
+#[derive(Clone, Copy, Debug)]
+pub struct Camera {
+    projection: Rays,
+    /// Unit vectors to the right and down in the picture, scaled to the distance of neighbouring pixels.
+    right: DVec3,
+    down: DVec3,
+    forward: DVec3,
+    /// The middle of the picture, in pixels.
+    middle: [f64; 2],
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Rays {
+    /// From this eye; `right` and `down` are taken at distance 1.
+    Spreading(DVec3),
+    /// Along `forward`, from the plane through this point.
+    Parallel(DVec3),
+}
+
+impl Camera {
+    /// A camera for pictures of `size` that look into `region`.
+    ///
+    /// # Errors
+    /// When a number is out of range or the directions are degenerate.
+    pub fn new(view: View, projection: Projection, region: &Region, size: Size) -> Result<Self, CameraError> {
+        let radius = 0.5 * region.extent().length();
+        let (width, height) = (f64::from(size.width()), f64::from(size.height()));
+        // What must be visible of the bounding sphere is decided by the shorter side of the picture.
+        let narrowness = (width / height).min(1.0);
+        let framing_distance = match projection {
+            Projection::Perspective { fov } => {
+                checked("the field of view", "between 0 and 180 degrees", fov, 0.0 < fov && fov < 180.0)?;
+                radius / core_math::sin(core_math::atan(half_height(fov) * narrowness))
+            }
+            Projection::Orthographic { .. } => 2.0 * radius,
+        };
+        let (eye, forward, up) = place(view, region.center(), framing_distance)?;
+        let right = forward.cross(up).normalize();
+        let down = forward.cross(right);
+        let (projection, spacing) = match projection {
+            Projection::Perspective { fov } => (Rays::Spreading(eye), 2.0 * half_height(fov) / height),
+            Projection::Orthographic { view_width } => {
+                let view_width = view_width.unwrap_or(2.0 * radius * (width / height).max(1.0));
+                checked(
+                    "the view width",
+                    "positive",
+                    view_width,
+                    view_width > 0.0 && view_width.is_finite(),
+                )?;
+                (Rays::Parallel(eye), view_width / width)
+            }
+        };
+        let middle = [0.5 * width, 0.5 * height];
+        Ok(Self { projection, right: spacing * right, down: spacing * down, forward, middle })
+    }
+
+    /// The ray through the middle of a pixel. Its direction has length 1 up to rounding, so t is a distance.
+    pub fn ray(&self, column: u32, row: u32) -> Ray {
+        let across = f64::from(column) + 0.5 - self.middle[0];
+        let along = f64::from(row) + 0.5 - self.middle[1];
+        let offset = across * self.right + along * self.down;
+        match self.projection {
+            Rays::Spreading(eye) => Ray { origin: eye, direction: (self.forward + offset).normalize() },
+            Rays::Parallel(middle) => Ray { origin: middle + offset, direction: self.forward },
+        }
+    }
+
+    /// The unit vector into the picture.
+    pub fn forward(&self) -> DVec3 {
+        self.forward
+    }
+
+    /// The unit vector towards the right edge of the picture.
+    pub fn right(&self) -> DVec3 {
+        self.right.normalize()
+    }
+
+    /// The unit vector towards the upper edge of the picture.
+    pub fn up(&self) -> DVec3 {
+        -self.down.normalize()
+    }
+}
+
+/// Half the height of the picture at distance 1.
+fn half_height(fov: f64) -> f64 {
+    core_math::tan(0.5 * fov.to_radians())
+}
+
+/// The eye, the unit vector forward, and a direction that is up in the picture and not along `forward`.
+fn place(view: View, center: DVec3, framing_distance: f64) -> Result<(DVec3, DVec3, DVec3), CameraError> {
+    match view {
+        View::Orbit { yaw, pitch, distance } => {
+            checked("the yaw", "finite", yaw, yaw.is_finite())?;
+            checked("the pitch", "between -90 and 90 degrees", pitch, pitch.abs() <= 90.0)?;
+            let distance = distance.unwrap_or(framing_distance);
+            checked("the distance", "positive", distance, distance > 0.0 && distance.is_finite())?;
+            // Correctly rounded functions, so that the camera is the same on every machine.
+            let (sin_yaw, cos_yaw) = core_math::sincos(yaw.to_radians());
+            let (sin_pitch, cos_pitch) = core_math::sincos(pitch.to_radians());
+            let outward = DVec3::new(cos_pitch * sin_yaw, -cos_pitch * cos_yaw, sin_pitch);
+            // Perpendicular to `outward` at every pitch, so that looking straight down has an up direction too.
+            let up = DVec3::new(-sin_pitch * sin_yaw, sin_pitch * cos_yaw, cos_pitch);
+            Ok((center + distance * outward, -outward, up))
+        }
+        View::LookAt { eye, target, up } => {
+            let all = eye + target + up;
+            checked("the eye, the target and the up direction", "finite", all.length(), all.is_finite())?;
+            let forward = (target - eye).try_normalize().ok_or(CameraError::NoDirection)?;
+            let up = up.try_normalize().ok_or(CameraError::NoUp)?;
+            if forward.cross(up).length() < 1e-9 {
+                return Err(CameraError::NoUp);
+            }
+            Ok((eye, forward, up))
+        }
+    }
+}
+
+fn checked(what: &'static str, range: &'static str, given: f64, holds: bool) -> Result<(), CameraError> {
+    if holds { Ok(()) } else { Err(CameraError::OutOfRange { what, range, given }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CLOSE: f64 = 1e-12;
+
+    fn region() -> Region {
+        Region::new(DVec3::new(-1.0, -2.0, -3.0), DVec3::new(3.0, 2.0, 1.0)).unwrap()
+    }
+
+    fn orbit(yaw: f64, pitch: f64) -> View {
+        View::Orbit { yaw, pitch, distance: None }
+    }
+
+    #[test]
+    fn yaw_zero_looks_along_y_with_x_to_the_right() {
+        let camera =
+            Camera::new(orbit(0.0, 0.0), Projection::DEFAULT, &region(), Size::new(64, 48).unwrap()).unwrap();
+        assert!((camera.forward() - DVec3::Y).length() < CLOSE);
+        assert!((camera.right() - DVec3::X).length() < CLOSE);
+        assert!((camera.up() - DVec3::Z).length() < CLOSE);
+    }
+
+    #[test]
+    fn pitch_ninety_looks_straight_down() {
+        let camera =
+            Camera::new(orbit(0.0, 90.0), Projection::DEFAULT, &region(), Size::new(64, 48).unwrap())
+                .unwrap();
+        assert!((camera.forward() + DVec3::Z).length() < CLOSE);
+        assert!((camera.up() - DVec3::Y).length() < CLOSE);
+    }
+
+    /// The bounding sphere is framed: it stays inside the picture, and fills its shorter side.
+    #[test]
+    fn the_whole_region_is_in_the_picture() {
+        let region = region();
+        let radius = 0.5 * region.extent().length();
+        for (width, height) in [(100, 100), (300, 100), (100, 300)] {
+            for projection in [Projection::DEFAULT, Projection::Orthographic { view_width: None }] {
+                let size = Size::new(width, height).unwrap();
+                let camera = Camera::new(View::DEFAULT, projection, &region, size).unwrap();
+                let (column, row) = (width / 2, height / 2);
+                let nearest_miss = |column, row| {
+                    let ray = camera.ray(column, row);
+                    let offset = region.center() - ray.origin;
+                    (offset - offset.dot(ray.direction) * ray.direction).length()
+                };
+                let edges = [
+                    nearest_miss(0, row),
+                    nearest_miss(width - 1, row),
+                    nearest_miss(column, 0),
+                    nearest_miss(column, height - 1),
+                ];
+                let tightest = edges.iter().copied().fold(f64::INFINITY, f64::min);
+                assert!(tightest > 0.97 * radius, "{width}x{height} {projection:?}: {edges:?} of {radius}");
+                assert!(tightest < 1.03 * radius, "{width}x{height} {projection:?}: {edges:?} of {radius}");
+            }
+        }
+    }
+
+    #[test]
+    fn degenerate_views_are_refused() {
+        let size = Size::new(8, 8).unwrap();
+        let new = |view, projection| Camera::new(view, projection, &region(), size).map(|_| ());
+        let look = |eye, target, up| new(View::LookAt { eye, target, up }, Projection::DEFAULT);
+        assert_eq!(look(DVec3::ONE, DVec3::ONE, DVec3::Z), Err(CameraError::NoDirection));
+        assert_eq!(look(DVec3::ZERO, DVec3::Z, DVec3::Z), Err(CameraError::NoUp));
+        assert_eq!(look(DVec3::ZERO, DVec3::Y, DVec3::ZERO), Err(CameraError::NoUp));
+        assert!(matches!(look(DVec3::NAN, DVec3::Y, DVec3::Z), Err(CameraError::OutOfRange { .. })));
+        for fov in [0.0, 180.0, f64::NAN] {
+            assert!(new(View::DEFAULT, Projection::Perspective { fov }).is_err());
+        }
+        assert!(new(View::DEFAULT, Projection::Orthographic { view_width: Some(0.0) }).is_err());
+        assert!(new(orbit(0.0, 91.0), Projection::DEFAULT).is_err());
+    }
+}

@@ -1,0 +1,52 @@
+//! Colours in linear light, and their bytes in sRGB (IEC 61966-2-1).
+
+use std::sync::LazyLock;
+
+use glam::DVec3;
+
+/// A colour as red, green and blue in linear light, 1 being the brightest that a picture shows.
+pub type Color = DVec3;
+
+/// The colour of three sRGB bytes.
+pub fn color_from_srgb(bytes: [u8; 3]) -> Color {
+    DVec3::from_array(bytes.map(|byte| linear(f64::from(byte))))
+}
+
+/// The nearest three sRGB bytes; what is brighter than 1 becomes 1.
+pub(crate) fn srgb_from_color(color: Color) -> [u8; 3] {
+    color.to_array().map(|component| BORDERS.partition_point(|&border| border <= component) as u8)
+}
+
+/// Linear light of an sRGB component from 0 to 255.
+fn linear(component: f64) -> f64 {
+    let encoded = component / 255.0;
+    if encoded <= 0.040_45 { encoded / 12.92 } else { core_math::pow((encoded + 0.055) / 1.055, 2.4) }
+}
+
+/// The linear light at which each byte gives way to the next.
+static BORDERS: LazyLock<[f64; 255]> =
+    LazyLock::new(|| std::array::from_fn(|byte| linear(byte as f64 + 0.5)));
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_survive_the_way_to_linear_light_and_back() {
+        for byte in 0..=255 {
+            assert_eq!(srgb_from_color(color_from_srgb([byte, 255 - byte, 0])), [byte, 255 - byte, 0]);
+        }
+    }
+
+    #[test]
+    fn light_out_of_range_is_clipped() {
+        assert_eq!(srgb_from_color(DVec3::new(-1.0, 7.0, f64::NAN)), [0, 255, 0]);
+    }
+
+    /// Reference values of IEC 61966-2-1: half of the light is byte 188, byte 128 is 21.6 % of the light.
+    #[test]
+    fn middle_grey_is_where_the_standard_has_it() {
+        assert_eq!(srgb_from_color(DVec3::splat(0.5)), [188; 3]);
+        assert!((color_from_srgb([128; 3]).x - 0.215_860_5).abs() < 1e-7);
+    }
+}

@@ -1,0 +1,145 @@
+//! Pictures: what was found, pixel by pixel.
+
+use glam::DVec3;
+use iso_grid::{Counters, Outcome};
+
+use crate::Size;
+
+/// How the search for a pixel's surface ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// The ray crosses the surface.
+    Hit,
+    /// The ray meets the surface without a proven crossing.
+    Touch,
+    /// The ray meets no surface.
+    Miss,
+    /// The method could not decide.
+    Undecided,
+}
+
+impl From<&Outcome> for Status {
+    fn from(outcome: &Outcome) -> Self {
+        match outcome {
+            Outcome::Hit(_) => Self::Hit,
+            Outcome::Touch(_) => Self::Touch,
+            Outcome::Miss => Self::Miss,
+            Outcome::Undecided(_) => Self::Undecided,
+        }
+    }
+}
+
+/// Pixels by status.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StatusCounts {
+    /// Pixels whose ray crosses the surface.
+    pub hit: u64,
+    /// Pixels whose ray meets the surface without a proven crossing.
+    pub touch: u64,
+    /// Pixels whose ray meets no surface.
+    pub miss: u64,
+    /// Pixels that the method could not decide.
+    pub undecided: u64,
+}
+
+impl StatusCounts {
+    /// Counts one pixel more.
+    pub fn count(&mut self, status: Status) {
+        match status {
+            Status::Hit => self.hit += 1,
+            Status::Touch => self.touch += 1,
+            Status::Miss => self.miss += 1,
+            Status::Undecided => self.undecided += 1,
+        }
+    }
+}
+
+impl std::ops::AddAssign for StatusCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.hit += other.hit;
+        self.touch += other.touch;
+        self.miss += other.miss;
+        self.undecided += other.undecided;
+    }
+}
+
+/// Which buffers a picture keeps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Layers {
+    /// The shaded picture.
+    pub color: bool,
+    /// The distance along each ray.
+    pub depth: bool,
+    /// The unit normals.
+    pub normals: bool,
+    /// The points of the surface.
+    pub points: bool,
+    /// The status of each pixel.
+    pub statuses: bool,
+}
+
+impl Layers {
+    /// The shaded picture alone.
+    pub const COLOR: Self =
+        Self { color: true, depth: false, normals: false, points: false, statuses: false };
+
+    /// Whether normals must be computed.
+    pub(crate) fn need_normals(self) -> bool {
+        self.color || self.normals
+    }
+}
+
+/// A finished picture: the layers that were asked for, rows from top to bottom, and what they took.
+///
+/// Layers that were not asked for are empty.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// Width and height.
+    pub size: Size,
+    /// Red, green and blue bytes in sRGB.
+    pub color: Vec<[u8; 3]>,
+    /// The distance t along each ray; NaN where nothing was found.
+    pub depth: Vec<f64>,
+    /// Unit normals towards larger F; NaN where nothing was found.
+    pub normals: Vec<DVec3>,
+    /// Points of the surface; NaN where nothing was found.
+    pub points: Vec<DVec3>,
+    /// The status of each pixel.
+    pub statuses: Vec<Status>,
+    /// Pixels by status.
+    pub counts: StatusCounts,
+    /// The work of tracing.
+    pub counters: Counters,
+    /// The share of the wall time spent on rays, in seconds: threads trace and shade in turns, so their common time is
+    /// divided as the threads' own times are.
+    pub trace_seconds: f64,
+    /// The share of the wall time spent on normals and colours, in seconds.
+    pub shade_seconds: f64,
+}
+
+impl Picture {
+    /// A picture with room for `layers`; `None` when memory does not suffice.
+    pub(crate) fn with_room(size: Size, layers: Layers) -> Option<Self> {
+        Some(Self {
+            size,
+            color: filled(layers.color, size, [0; 3])?,
+            depth: filled(layers.depth, size, f64::NAN)?,
+            normals: filled(layers.normals, size, DVec3::NAN)?,
+            points: filled(layers.points, size, DVec3::NAN)?,
+            statuses: filled(layers.statuses, size, Status::Miss)?,
+            counts: StatusCounts::default(),
+            counters: Counters::default(),
+            trace_seconds: 0.0,
+            shade_seconds: 0.0,
+        })
+    }
+}
+
+fn filled<T: Clone>(wanted: bool, size: Size, value: T) -> Option<Vec<T>> {
+    let mut buffer = Vec::new();
+    if wanted {
+        buffer.try_reserve_exact(size.pixels()).ok()?;
+        buffer.resize(size.pixels(), value);
+    }
+    Some(buffer)
+}

@@ -1,0 +1,108 @@
+//! Shading: what a point of the surface looks like.
+
+use glam::DVec3;
+use iso_grid::Outcome;
+
+use crate::color::{Color, color_from_srgb};
+use crate::{Camera, Size};
+
+/// Materials and lights. Both sides of the surface are lit alike and told apart by colour.
+///
+/// Three lights are fixed to the camera, so that a surface looks well from every side: a key light from the upper left, a
+/// fill light from the right, and a head light. The highlight is Blinn's (1977).
+#[derive(Clone, Debug)]
+pub struct Shading {
+    /// The side where F > C lies towards the viewer.
+    outside: Color,
+    /// The side where F < C lies towards the viewer.
+    inside: Color,
+    /// The surface where no normal is known.
+    unlit: Color,
+    background_top: Color,
+    background_bottom: Color,
+    /// How much of the ambient light comes from above rather than from all sides.
+    sky: DVec3,
+    lights: [Light; 3],
+    statuses_shown: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Light {
+    /// The unit vector towards the light.
+    towards: DVec3,
+    /// The unit vector halfway between the light and the viewer.
+    halfway: DVec3,
+    strength: f64,
+    highlight: f64,
+}
+
+const AMBIENT: f64 = 0.14;
+
+impl Shading {
+    /// The look of pictures by default, with lights around `camera`. With `statuses_shown`, pixels that are not a plain
+    /// hit or miss are painted over: touches green, undecided ones magenta.
+    pub fn new(camera: &Camera, statuses_shown: bool) -> Self {
+        let light = |right: f64, up: f64, back: f64, strength: f64, highlight: f64| {
+            let towards = (right * camera.right() + up * camera.up() - back * camera.forward()).normalize();
+            let halfway = (towards - camera.forward()).normalize();
+            Light { towards, halfway, strength, highlight }
+        };
+        Self {
+            outside: color_from_srgb([236, 156, 72]),
+            inside: color_from_srgb([72, 138, 196]),
+            unlit: color_from_srgb([150, 150, 150]),
+            background_top: color_from_srgb([250, 251, 253]),
+            background_bottom: color_from_srgb([206, 214, 224]),
+            sky: camera.up(),
+            lights: [
+                light(-0.55, 0.75, 0.65, 0.62, 0.22),
+                light(0.85, 0.10, 0.55, 0.18, 0.0),
+                light(0.0, 0.0, 1.0, 0.20, 0.04),
+            ],
+            statuses_shown,
+        }
+    }
+
+    /// The colour of a pixel from what its ray found. `normal` points towards larger F; NaN where there is none.
+    pub fn color(&self, outcome: &Outcome, normal: DVec3, view: DVec3, row: u32, size: Size) -> Color {
+        match outcome {
+            Outcome::Miss => self.background(row, size),
+            Outcome::Undecided(_) if self.statuses_shown => color_from_srgb([214, 40, 160]),
+            // Nothing is proven here, so nothing is drawn.
+            Outcome::Undecided(_) => self.background(row, size),
+            Outcome::Touch(_) if self.statuses_shown => {
+                let lit = self.surface(normal, view);
+                0.35 * lit + 0.65 * color_from_srgb([40, 170, 90])
+            }
+            Outcome::Hit(_) | Outcome::Touch(_) => self.surface(normal, view),
+        }
+    }
+
+    fn background(&self, row: u32, size: Size) -> Color {
+        let depth = (f64::from(row) + 0.5) / f64::from(size.height());
+        self.background_top.lerp(self.background_bottom, depth)
+    }
+
+    fn surface(&self, normal: DVec3, view: DVec3) -> Color {
+        if normal.is_nan() {
+            return self.unlit;
+        }
+        let facing = normal.dot(view);
+        let (normal, material) = if facing <= 0.0 { (normal, self.outside) } else { (-normal, self.inside) };
+        let mut diffuse = AMBIENT * (1.0 + 0.5 * normal.dot(self.sky));
+        let mut highlight = 0.0;
+        for light in &self.lights {
+            // Light wraps a little around the surface, which keeps its dark side readable.
+            let wrapped = (normal.dot(light.towards) + 0.25) / 1.25;
+            diffuse += light.strength * wrapped.max(0.0);
+            highlight += light.highlight * sixty_fourth_power(normal.dot(light.halfway).max(0.0));
+        }
+        let rim = 1.0 - facing.abs().min(1.0);
+        material * diffuse * (1.0 - 0.35 * rim * rim * rim) + DVec3::splat(highlight)
+    }
+}
+
+/// x⁶⁴ by squaring: the same on every machine, unlike a library's power.
+fn sixty_fourth_power(x: f64) -> f64 {
+    (0..6).fold(x, |power, _| power * power)
+}
