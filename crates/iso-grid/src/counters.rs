@@ -1,7 +1,9 @@
 //! What the work of a method is measured in.
 
+use serde::Serialize;
+
 /// Counts of work, added up over rays and threads. A method leaves at zero what it does not do.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Counters {
     /// Rays asked about.
     pub rays: u64,

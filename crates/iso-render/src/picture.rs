@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use iso_grid::{Counters, Outcome};
+use serde::Serialize;
 
 use crate::Size;
 
@@ -30,7 +31,7 @@ impl From<&Outcome> for Status {
 }
 
 /// Pixels by status.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct StatusCounts {
     /// Pixels whose ray crosses the surface.
     pub hit: u64,
