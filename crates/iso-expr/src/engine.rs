@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::{Decoration, Program};
+use crate::{Decorated, Decoration, Program};
 
 /// Turns programs into kernels. The interpreter is one engine, native code another.
 pub trait Engine: Send + Sync {
@@ -98,7 +98,25 @@ pub struct Scratch {
     /// Registers of the interpreter's point and batch kernels.
     pub(crate) values: Vec<f64>,
     /// Registers of the interpreter's box kernels.
-    pub(crate) enclosures: Vec<crate::Decorated>,
+    pub(crate) enclosures: Vec<Decorated>,
+}
+
+impl Scratch {
+    /// Room for `count` doubles of any value, allocated only when it is more than ever before.
+    pub(crate) fn values(&mut self, count: usize) -> &mut [f64] {
+        if self.values.len() < count {
+            self.values.resize(count, 0.0);
+        }
+        &mut self.values[..count]
+    }
+
+    /// Room for `count` enclosures of any value, allocated only when it is more than ever before.
+    pub(crate) fn enclosures(&mut self, count: usize) -> &mut [Decorated] {
+        if self.enclosures.len() < count {
+            self.enclosures.resize(count, Decorated::EMPTY);
+        }
+        &mut self.enclosures[..count]
+    }
 }
 
 /// Why a program could not be compiled.

@@ -8,12 +8,16 @@
 
 mod constant;
 pub mod engine;
+mod interpreter;
 pub mod interval;
 mod operation;
 pub mod program;
+#[cfg(any(test, feature = "random"))]
+pub mod random;
 
 pub use constant::Constant;
 pub use engine::{BatchKernel, BoxKernel, CompileError, Engine, PointKernel, Scratch};
+pub use interpreter::Interpreter;
 pub use interval::{Decorated, Decoration, Extension, Interval};
 pub use operation::{Chain, Operation, Value};
 pub use program::{Axis, Node, NodeId, Program};

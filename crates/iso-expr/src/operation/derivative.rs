@@ -148,10 +148,8 @@ pub(super) fn maximum(chain: &mut Chain<'_>) -> Option<NodeId> {
 pub(super) fn integer_power(chain: &mut Chain<'_>) -> Option<NodeId> {
     let derivative = chain.derivatives[0]?;
     let [a, exponent, _] = chain.operands;
-    let crate::Node::Constant(power) = chain.program.node(exponent) else {
-        unreachable!("the exponent of an integer power is a constant");
-    };
-    let lower = match power.value() as u32 - 1 {
+    let power = chain.program.exponent(exponent).expect("programs check the exponents of integer powers");
+    let lower = match power - 1 {
         1 => a,
         lower => chain.program.integer_power(a, lower),
     };

@@ -5,7 +5,7 @@
 
 mod derivative;
 mod table;
-mod value;
+pub(crate) mod value;
 
 pub use derivative::Chain;
 use table::Row;

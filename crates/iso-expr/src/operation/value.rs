@@ -15,7 +15,7 @@ pub enum Value {
 
 macro_rules! values {
     ($($function:ident($($operand:ident),*) = $value:expr;)*) => {
-        $(pub(super) extern "C" fn $function($($operand: f64),*) -> f64 { $value })*
+        $(pub(crate) extern "C" fn $function($($operand: f64),*) -> f64 { $value })*
     };
 }
 
@@ -71,7 +71,7 @@ fn truth(a: f64, b: f64, holds: bool) -> f64 {
 /// `base` multiplied by itself, by squaring from the exponent's lowest bit up: x⁶ = x²·x⁴.
 ///
 /// This order is the definition; engines that write the products out follow it.
-pub(super) extern "C" fn integer_power(base: f64, exponent: f64) -> f64 {
+pub(crate) extern "C" fn integer_power(base: f64, exponent: f64) -> f64 {
     let mut remaining = exponent as u32;
     let mut square = base;
     let mut product = None;
@@ -88,12 +88,12 @@ pub(super) extern "C" fn integer_power(base: f64, exponent: f64) -> f64 {
 }
 
 /// The C function, but undefined for every negative base, and for an undefined base or exponent.
-pub(super) extern "C" fn power(base: f64, exponent: f64) -> f64 {
+pub(crate) extern "C" fn power(base: f64, exponent: f64) -> f64 {
     if base.is_nan() || exponent.is_nan() || base < 0.0 { f64::NAN } else { core_math::pow(base, exponent) }
 }
 
 /// The exact remainder, moved to the sign of `b`.
-pub(super) extern "C" fn modulo(a: f64, b: f64) -> f64 {
+pub(crate) extern "C" fn modulo(a: f64, b: f64) -> f64 {
     let remainder = a % b;
     if remainder != 0.0 && (remainder < 0.0) != (b < 0.0) { remainder + b } else { remainder }
 }

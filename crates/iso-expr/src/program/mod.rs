@@ -1,5 +1,10 @@
 //! Programs: hash-consed, straight-line descriptions of what is to be evaluated.
 
+mod display;
+mod gradient;
+mod powers;
+mod rebuild;
+
 use std::collections::HashMap;
 
 use crate::{Constant, Operation};
@@ -52,6 +57,14 @@ pub enum Node {
 }
 
 impl Node {
+    /// This node with each operand replaced.
+    fn with_operands(self, mut replace: impl FnMut(NodeId) -> NodeId) -> Self {
+        match self {
+            Self::Apply(operation, operands) => Self::Apply(operation, operands.map(&mut replace)),
+            leaf => leaf,
+        }
+    }
+
     /// The nodes that this one is computed from.
     pub fn operands(&self) -> &[NodeId] {
         match self {
@@ -127,9 +140,16 @@ impl Program {
     /// An operation on nodes of this program. Nothing is simplified; an equal node is reused.
     ///
     /// # Panics
-    /// When the number of operands is not the operation's arity.
+    /// When the number of operands is not the operation's arity, or the exponent of an integer power is not a constant
+    /// integer from 2 to [`Operation::LARGEST_POWER`].
     pub fn apply(&mut self, operation: Operation, operands: &[NodeId]) -> NodeId {
         assert_eq!(operands.len(), operation.arity(), "{operation:?} takes {} operands", operation.arity());
+        if operation == Operation::IntegerPower {
+            assert!(
+                self.exponent(operands[1]).is_some(),
+                "the exponent is not an integer that powers may have"
+            );
+        }
         let operand = |place: usize| *operands.get(place).unwrap_or(&operands[0]);
         self.intern(Node::Apply(operation, [operand(0), operand(1), operand(2)]))
     }
@@ -140,6 +160,14 @@ impl Program {
         self.apply(Operation::IntegerPower, &[base, exponent])
     }
 
+    /// The integer at `id`, if it is one that [`Operation::IntegerPower`] takes.
+    pub(crate) fn exponent(&self, id: NodeId) -> Option<u32> {
+        let Node::Constant(constant) = self.node(id) else { return None };
+        let exponent = constant.value() as u32;
+        let fits = (2..=Operation::LARGEST_POWER).contains(&exponent);
+        (fits && constant.is_exact() && f64::from(exponent) == constant.value()).then_some(exponent)
+    }
+
     fn intern(&mut self, node: Node) -> NodeId {
         *self.places.entry(node).or_insert_with(|| {
             let id = u32::try_from(self.nodes.len()).expect("formulas are limited to far fewer nodes");
@@ -148,3 +176,6 @@ impl Program {
         })
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,71 @@
+//! Copies of programs, node by node: what every pass is made of.
+
+use super::{Node, NodeId, Program};
+
+impl Program {
+    /// A copy of this program without the nodes that no output needs.
+    pub fn pruned(&self) -> Self {
+        let needed = self.needed();
+        let mut pruned = Self::new();
+        let mut places = Vec::with_capacity(self.nodes.len());
+        for (node, needed) in self.nodes.iter().zip(needed) {
+            // What is not needed is never looked up, so that any place will do for it.
+            places.push(if needed {
+                pruned.intern(node.with_operands(|operand| places[operand.index()]))
+            } else {
+                NodeId(0)
+            });
+        }
+        pruned.outputs = self.outputs.iter().map(|output| places[output.index()]).collect();
+        pruned
+    }
+
+    /// A copy in which nodes of a new program stand for x, y and z: `variables` adds them and names them in that order.
+    ///
+    /// A ray `o + t·d` is such a substitution, with its parameter t a variable of the new program.
+    pub fn substituted(&self, variables: impl FnOnce(&mut Self) -> [NodeId; 3]) -> Self {
+        let mut program = Self::new();
+        let variables = variables(&mut program);
+        program.outputs = program.import(self, variables);
+        program.pruned()
+    }
+
+    /// Adds the nodes of `other` to this program, `variables` standing for x, y and z, and returns where its outputs are.
+    pub fn import(&mut self, other: &Self, variables: [NodeId; 3]) -> Vec<NodeId> {
+        self.import_with(other, |program, node| match node {
+            Node::Variable(axis) => variables[axis as usize],
+            node => program.intern(node),
+        })
+    }
+
+    /// Adds the nodes of `other` as `build` makes them: it is given each node, its operands already replaced by what was
+    /// built for them. Returns what was built for the outputs.
+    pub(super) fn import_with(
+        &mut self,
+        other: &Self,
+        mut build: impl FnMut(&mut Self, Node) -> NodeId,
+    ) -> Vec<NodeId> {
+        let mut places: Vec<NodeId> = Vec::with_capacity(other.nodes.len());
+        for node in &other.nodes {
+            let node = node.with_operands(|operand| places[operand.index()]);
+            places.push(build(self, node));
+        }
+        other.outputs.iter().map(|output| places[output.index()]).collect()
+    }
+
+    /// For each node whether an output is computed from it.
+    fn needed(&self) -> Vec<bool> {
+        let mut needed = vec![false; self.nodes.len()];
+        for output in &self.outputs {
+            needed[output.index()] = true;
+        }
+        for (id, node) in self.iter().rev() {
+            if needed[id.index()] {
+                for operand in node.operands() {
+                    needed[operand.index()] = true;
+                }
+            }
+        }
+        needed
+    }
+}
