@@ -119,6 +119,16 @@ impl Scratch {
     }
 }
 
+impl Scratch {
+    /// Room for `count` doubles, with whatever was left there.
+    pub fn values(&mut self, count: usize) -> &mut [f64] {
+        if self.values.len() < count {
+            self.values.resize(count, 0.0);
+        }
+        &mut self.values[..count]
+    }
+}
+
 /// Why a program could not be compiled.
 #[derive(Clone, Debug, Error)]
 #[non_exhaustive]

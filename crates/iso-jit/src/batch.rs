@@ -1,0 +1,160 @@
+//! Kernels over batches of points: a loop over groups of 128-bit lanes.
+
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::{AbiParam, InstBuilder, Signature, Value, types};
+use cranelift_frontend::FunctionBuilder;
+use iso_expr::engine::Points;
+use iso_expr::{BatchKernel, Node, Program, Scratch};
+
+use crate::code::{Blueprint, Compiled};
+use crate::lanes::{Lanes, Writer};
+use crate::symbols::Calls;
+use crate::values;
+
+/// The points of one pair of lanes.
+const PAIR: usize = 2;
+
+/// Pairs of lanes in one round of the loop, for programs short enough to keep all of them in registers. Several
+/// independent evaluations hide the latency of each.
+const PAIRS_WHEN_SHORT: usize = 4;
+
+/// The most points in one round.
+const WIDEST: usize = PAIR * PAIRS_WHEN_SHORT;
+
+/// x, y and z of `count` points, where the outputs go, and `count`, which is not less than the points of one round.
+type Evaluate = unsafe extern "C" fn(*const f64, *const f64, *const f64, *mut f64, usize);
+
+/// A kernel over batches of points, as native code.
+pub(crate) struct NativeBatch {
+    compiled: Compiled<Evaluate>,
+    outputs: usize,
+    width: usize,
+}
+
+impl NativeBatch {
+    pub(crate) fn new(blueprint: &BatchBlueprint<'_>, compiled: Compiled<Evaluate>) -> Self {
+        Self { compiled, outputs: blueprint.program.outputs().len(), width: blueprint.width() }
+    }
+
+    /// Evaluates fewer points than one round has: the last one is repeated to fill the round.
+    fn evaluate_few(&self, scratch: &mut Scratch, points: Points<'_>, values: &mut [f64]) {
+        let count = points.x.len();
+        let padded = |from: &[f64]| std::array::from_fn::<f64, WIDEST, _>(|place| from[place.min(count - 1)]);
+        let (x, y, z) = (padded(points.x), padded(points.y), padded(points.z));
+        let outputs = scratch.values(self.outputs * self.width);
+        // SAFETY: `width` points, not more than `WIDEST`, are there, and room for as many of each output.
+        unsafe {
+            (self.compiled.function)(x.as_ptr(), y.as_ptr(), z.as_ptr(), outputs.as_mut_ptr(), self.width);
+        }
+        for (values, outputs) in values.chunks_exact_mut(count).zip(outputs.chunks_exact(self.width)) {
+            values.copy_from_slice(&outputs[..count]);
+        }
+    }
+}
+
+impl BatchKernel for NativeBatch {
+    fn evaluate(&self, scratch: &mut Scratch, points: Points<'_>, values: &mut [f64]) {
+        let Points { x, y, z } = points;
+        let count = x.len();
+        assert!(y.len() == count && z.len() == count, "as many of each coordinate");
+        assert_eq!(values.len(), self.outputs * count, "room for every output at every point");
+        if count >= self.width {
+            // SAFETY: there are `count` of each coordinate, enough for one round, and room for as many of each output;
+            // none of it overlaps what is written, which is borrowed mutably.
+            unsafe {
+                (self.compiled.function)(x.as_ptr(), y.as_ptr(), z.as_ptr(), values.as_mut_ptr(), count);
+            }
+        } else if count > 0 {
+            self.evaluate_few(scratch, points, values);
+        }
+    }
+}
+
+/// Takes what [`Evaluate`] names, and walks through it round by round. The last round ends with the last point, and so may
+/// evaluate some points a second time, which changes nothing.
+pub(crate) struct BatchBlueprint<'a> {
+    program: &'a Program,
+    pairs: usize,
+}
+
+impl<'a> BatchBlueprint<'a> {
+    pub(crate) fn new(program: &'a Program) -> Self {
+        let calls =
+            |node: &Node| matches!(node, Node::Apply(operation, _) if !values::is_written_out(*operation));
+        let pairs = if program.nodes().iter().any(calls) { 1 } else { PAIRS_WHEN_SHORT };
+        Self { program, pairs }
+    }
+
+    /// Points in one round.
+    fn width(&self) -> usize {
+        PAIR * self.pairs
+    }
+}
+
+impl Blueprint for BatchBlueprint<'_> {
+    const NAME: &'static str = "batch";
+    type Function = Evaluate;
+
+    fn sign(&self, signature: &mut Signature) {
+        signature.params.extend([AbiParam::new(types::I64); 5]);
+    }
+
+    fn write(&self, builder: &mut FunctionBuilder<'_>, calls: &mut Calls<'_>) {
+        let entry = builder.current_block().expect("writing begins in the entry block");
+        let &[x, y, z, values, count] = builder.block_params(entry) else {
+            unreachable!("five parameters were signed")
+        };
+        // All offsets are in bytes.
+        let step = size_of::<f64>() * self.width();
+        let stride = builder.ins().imul_imm_s(count, size_of::<f64>() as i64);
+        let last = builder.ins().iadd_imm_s(stride, -(step as i64));
+        let first = builder.ins().iconst(types::I64, 0);
+        let (round, end) = (builder.create_block(), builder.create_block());
+        let offset = builder.append_block_param(round, types::I64);
+        builder.ins().jump(round, &[first.into()]);
+
+        builder.switch_to_block(round);
+        self.write_round(builder, calls, [x, y, z], values, stride, offset);
+        let next = builder.ins().iadd_imm_s(offset, step as i64);
+        let beyond = builder.ins().icmp(IntCC::UnsignedGreaterThan, next, last);
+        let next = builder.ins().select(beyond, last, next);
+        let done = builder.ins().icmp(IntCC::Equal, offset, last);
+        builder.ins().brif(done, end, &[], round, &[next.into()]);
+
+        builder.switch_to_block(end);
+        builder.ins().return_(&[]);
+    }
+
+    unsafe fn function(&self, start: *const u8) -> Self::Function {
+        // SAFETY: the code has the C convention, with the parameters that were signed.
+        unsafe { std::mem::transmute(start) }
+    }
+}
+
+impl BatchBlueprint<'_> {
+    /// Writes the evaluation of the points that stand `offset` bytes after the first.
+    fn write_round(
+        &self,
+        builder: &mut FunctionBuilder<'_>,
+        calls: &mut Calls<'_>,
+        coordinates: [Value; 3],
+        values: Value,
+        stride: Value,
+        offset: Value,
+    ) {
+        let mut writer = Writer { builder, lanes: Lanes::Two };
+        let addresses = coordinates.map(|start| writer.builder.ins().iadd(start, offset));
+        let displacement = |pair: usize| (size_of::<f64>() * PAIR * pair) as i32;
+        let arguments: Vec<_> = (0..self.pairs)
+            .map(|pair| addresses.map(|address| writer.load(address, displacement(pair))))
+            .collect();
+        let outputs = values::evaluate(&mut writer, calls, self.program, &arguments);
+        let mut address = writer.builder.ins().iadd(values, offset);
+        for output in 0..self.program.outputs().len() {
+            for (pair, outputs) in outputs.iter().enumerate() {
+                writer.store(outputs[output], address, displacement(pair));
+            }
+            address = writer.builder.ins().iadd(address, stride);
+        }
+    }
+}

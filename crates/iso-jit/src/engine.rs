@@ -1,0 +1,80 @@
+//! The engine itself.
+
+use std::fmt;
+use std::sync::Arc;
+
+use cranelift_codegen::Context;
+use cranelift_codegen::isa::TargetIsa;
+use iso_expr::{BatchKernel, BoxKernel, CompileError, Engine, PointKernel, Program};
+
+use crate::batch::{BatchBlueprint, NativeBatch};
+use crate::code::Compiled;
+use crate::host;
+use crate::point::{FunctionBlueprint, NativeFunction, NativePoint, PointBlueprint};
+use crate::powers::expanded;
+
+/// The engine's name on the command line and in reports.
+pub(crate) const NAME: &str = "jit";
+
+/// Compiles programs to native code. Threads may share it, and compile at the same time.
+#[derive(Clone)]
+pub struct Jit {
+    isa: Arc<dyn TargetIsa>,
+}
+
+impl Jit {
+    /// An engine for this machine.
+    ///
+    /// # Errors
+    /// When the code generator does not support the machine.
+    pub fn new() -> Result<Self, CompileError> {
+        Ok(Self { isa: host::instruction_set()? })
+    }
+
+    /// The one output of `program` as a native function.
+    ///
+    /// # Errors
+    /// When the program is too large.
+    ///
+    /// # Panics
+    /// When the program has another number of outputs.
+    pub fn function(&self, program: &Program) -> Result<NativeFunction, CompileError> {
+        assert_eq!(program.outputs().len(), 1, "a function has one output");
+        let program = self.admitted(program)?;
+        Ok(NativeFunction(Compiled::new(&self.isa, &mut Context::new(), &FunctionBlueprint(&program))?))
+    }
+
+    /// The program as kernels of values compute it, if it is not too large.
+    fn admitted(&self, program: &Program) -> Result<Program, CompileError> {
+        Ok(expanded(program))
+    }
+}
+
+impl Engine for Jit {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn point(&self, program: &Program) -> Result<Arc<dyn PointKernel>, CompileError> {
+        let program = self.admitted(program)?;
+        let compiled = Compiled::new(&self.isa, &mut Context::new(), &PointBlueprint(&program))?;
+        Ok(Arc::new(NativePoint::new(&program, compiled)))
+    }
+
+    fn batch(&self, program: &Program) -> Result<Arc<dyn BatchKernel>, CompileError> {
+        let program = self.admitted(program)?;
+        let blueprint = BatchBlueprint::new(&program);
+        let compiled = Compiled::new(&self.isa, &mut Context::new(), &blueprint)?;
+        Ok(Arc::new(NativeBatch::new(&blueprint, compiled)))
+    }
+
+    fn boxes(&self, _: &Program) -> Result<Arc<dyn BoxKernel>, CompileError> {
+        Err(crate::refused(&"kernels over boxes are not written yet"))
+    }
+}
+
+impl fmt::Debug for Jit {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_struct("Jit").field("target", &self.isa.triple().to_string()).finish()
+    }
+}

@@ -1,0 +1,103 @@
+//! Doubles side by side: one way of writing code for one double and for two in a 128-bit register.
+
+use cranelift_codegen::ir::condcodes::FloatCC;
+use cranelift_codegen::ir::{ConstantData, FuncRef, InstBuilder, MemFlagsData, Type, Value, types};
+use cranelift_frontend::FunctionBuilder;
+
+/// How many doubles one value of the written code holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Lanes {
+    /// One.
+    One,
+    /// Two, in a 128-bit register.
+    Two,
+}
+
+impl Lanes {
+    /// The type of such values.
+    pub(crate) fn ty(self) -> Type {
+        match self {
+            Self::One => types::F64,
+            Self::Two => types::F64X2,
+        }
+    }
+}
+
+/// Writes instructions on doubles side by side. Every instruction does the same in every lane.
+pub(crate) struct Writer<'a, 'b> {
+    pub(crate) builder: &'a mut FunctionBuilder<'b>,
+    pub(crate) lanes: Lanes,
+}
+
+/// The truth of a comparison in each lane: a byte for one lane, a mask of ones or zeros for two.
+#[derive(Clone, Copy)]
+pub(crate) struct Mask(Value);
+
+impl Writer<'_, '_> {
+    /// The same double in every lane.
+    pub(crate) fn constant(&mut self, value: f64) -> Value {
+        match self.lanes {
+            Lanes::One => self.builder.ins().f64const(value),
+            Lanes::Two => {
+                let bytes = [value.to_bits().to_le_bytes(); 2].concat();
+                let constant = self.builder.func.dfg.constants.insert(ConstantData::from(bytes));
+                self.builder.ins().vconst(types::F64X2, constant)
+            }
+        }
+    }
+
+    /// The doubles that stand `offset` bytes after `address`.
+    pub(crate) fn load(&mut self, address: Value, offset: i32) -> Value {
+        self.builder.ins().load(self.lanes.ty(), slice_access(), address, offset)
+    }
+
+    /// Puts doubles `offset` bytes after `address`.
+    pub(crate) fn store(&mut self, value: Value, address: Value, offset: i32) {
+        self.builder.ins().store(slice_access(), value, address, offset);
+    }
+
+    /// Where `a` and `b` compare as `condition` says.
+    pub(crate) fn compare(&mut self, condition: FloatCC, a: Value, b: Value) -> Mask {
+        Mask(self.builder.ins().fcmp(condition, a, b))
+    }
+
+    /// Where `a` is NaN.
+    pub(crate) fn is_nan(&mut self, a: Value) -> Mask {
+        self.compare(FloatCC::Unordered, a, a)
+    }
+
+    /// `a` where the mask holds, else `b`.
+    pub(crate) fn choose(&mut self, Mask(mask): Mask, a: Value, b: Value) -> Value {
+        match self.lanes {
+            Lanes::One => self.builder.ins().select(mask, a, b),
+            Lanes::Two => {
+                let mask = self.builder.ins().bitcast(types::F64X2, MemFlagsData::new(), mask);
+                self.builder.ins().bitselect(mask, a, b)
+            }
+        }
+    }
+
+    /// Calls a function of doubles that gives a double, once for each lane.
+    pub(crate) fn call(&mut self, function: FuncRef, operands: &[Value]) -> Value {
+        if self.lanes == Lanes::One {
+            return self.call_once(function, operands);
+        }
+        let [low, high] = [0, 1].map(|lane| {
+            let operands: Vec<_> =
+                operands.iter().map(|&a| self.builder.ins().extractlane(a, lane)).collect();
+            self.call_once(function, &operands)
+        });
+        let low = self.builder.ins().scalar_to_vector(types::F64X2, low);
+        self.builder.ins().insertlane(low, high, 1)
+    }
+
+    fn call_once(&mut self, function: FuncRef, operands: &[Value]) -> Value {
+        let call = self.builder.ins().call(function, operands);
+        self.builder.inst_results(call)[0]
+    }
+}
+
+/// Elements of slices of doubles: never trapping, aligned to eight bytes only.
+fn slice_access() -> MemFlagsData {
+    MemFlagsData::new().with_notrap()
+}

@@ -1,0 +1,52 @@
+//! Functions of this process that native code calls: the values of operations that are not written out.
+
+use std::collections::HashMap;
+
+use cranelift_codegen::ir::{AbiParam, FuncRef, Function, types};
+use cranelift_jit::JITModule;
+use cranelift_module::{Linkage, Module};
+use iso_expr::{Operation, Value};
+
+use crate::host;
+
+/// Begins the name of every function that native code calls, so that none is taken for another library's.
+const PREFIX: &str = "iso_";
+
+/// The address of the function called `name`, if it is one of ours.
+pub(crate) fn address(name: &str) -> Option<*const u8> {
+    let name = name.strip_prefix(PREFIX)?;
+    let operation = Operation::all().find(|operation| format!("{operation:?}") == name)?;
+    Some(match operation.value() {
+        Value::Unary(function) => function as *const u8,
+        Value::Binary(function) => function as *const u8,
+        Value::Ternary(function) => function as *const u8,
+    })
+}
+
+/// The functions that one kernel calls, declared as they are first needed.
+pub(crate) struct Calls<'a> {
+    module: &'a mut JITModule,
+    declared: HashMap<Operation, FuncRef>,
+    /// Whether the machine rounds doubles to integers without a call.
+    pub(crate) rounds_natively: bool,
+}
+
+impl<'a> Calls<'a> {
+    /// No functions yet.
+    pub(crate) fn new(module: &'a mut JITModule) -> Self {
+        let rounds_natively = host::rounds_natively(module.isa());
+        Self { module, declared: HashMap::new(), rounds_natively }
+    }
+
+    /// The function that gives the value of `operation`, to be called from `kernel`.
+    pub(crate) fn value(&mut self, kernel: &mut Function, operation: Operation) -> FuncRef {
+        *self.declared.entry(operation).or_insert_with(|| {
+            let mut signature = self.module.make_signature();
+            signature.params = vec![AbiParam::new(types::F64); operation.arity()];
+            signature.returns = vec![AbiParam::new(types::F64)];
+            let name = format!("{PREFIX}{operation:?}");
+            let function = self.module.declare_function(&name, Linkage::Import, &signature);
+            self.module.declare_func_in_func(function.expect("a name has one signature"), kernel)
+        })
+    }
+}

@@ -1,0 +1,141 @@
+//! Values of operations, written as instructions: bit for bit what [`Operation::value`] gives.
+
+use cranelift_codegen::ir::condcodes::FloatCC;
+use cranelift_codegen::ir::{InstBuilder, Value};
+use iso_expr::{Node, Operation, Program};
+
+use crate::lanes::Writer;
+use crate::symbols::Calls;
+
+/// Whether an operation's value is written out by [`apply`]; the others are left to functions.
+pub(crate) fn is_written_out(operation: Operation) -> bool {
+    use Operation as O;
+    matches!(
+        operation,
+        O::Add | O::Subtract | O::Multiply | O::Divide | O::Negate | O::Absolute | O::SquareRoot
+    ) || matches!(operation, O::Minimum | O::Maximum | O::Sign)
+        || matches!(operation, O::Less | O::LessOrEqual | O::Equal | O::Select)
+        || is_rounding(operation)
+}
+
+/// Whether the operation rounds to an integer, which not every machine does by itself.
+fn is_rounding(operation: Operation) -> bool {
+    use Operation as O;
+    matches!(operation, O::Floor | O::Ceil | O::Round | O::Truncate)
+}
+
+/// Writes one evaluation of `program` for each of `arguments`, the values of x, y and z, side by side so that the
+/// processor works on all of them at once. Gives the outputs of each.
+pub(crate) fn evaluate(
+    writer: &mut Writer<'_, '_>,
+    calls: &mut Calls<'_>,
+    program: &Program,
+    arguments: &[[Value; 3]],
+) -> Vec<Vec<Value>> {
+    let live = live_nodes(program);
+    // The value of each node in each evaluation; nodes that no output needs are left out.
+    let mut values: Vec<Vec<Value>> = vec![Vec::with_capacity(program.nodes().len()); arguments.len()];
+    for ((_, node), live) in program.iter().zip(live) {
+        for (values, arguments) in values.iter_mut().zip(arguments) {
+            let value = match node {
+                _ if !live => arguments[0],
+                Node::Variable(axis) => arguments[*axis as usize],
+                Node::Constant(constant) => writer.constant(constant.value()),
+                Node::Apply(operation, operands) => {
+                    let operands = operands.map(|id| values[id.index()]);
+                    apply(writer, calls, *operation, operands)
+                }
+            };
+            values.push(value);
+        }
+    }
+    let outputs = |values: Vec<Value>| program.outputs().iter().map(|id| values[id.index()]).collect();
+    values.into_iter().map(outputs).collect()
+}
+
+/// Which nodes the outputs need.
+pub(crate) fn live_nodes(program: &Program) -> Vec<bool> {
+    let mut live = vec![false; program.nodes().len()];
+    for id in program.outputs() {
+        live[id.index()] = true;
+    }
+    for (id, node) in program.iter().rev() {
+        if live[id.index()] {
+            for operand in node.operands() {
+                live[operand.index()] = true;
+            }
+        }
+    }
+    live
+}
+
+/// Writes one operation. Only as many operands as its arity count.
+fn apply(
+    writer: &mut Writer<'_, '_>,
+    calls: &mut Calls<'_>,
+    operation: Operation,
+    operands: [Value; 3],
+) -> Value {
+    use Operation as O;
+    if !is_written_out(operation) || is_rounding(operation) && !calls.rounds_natively {
+        let function = calls.value(writer.builder.func, operation);
+        return writer.call(function, &operands[..operation.arity()]);
+    }
+    let [a, b, c] = operands;
+    match operation {
+        O::Add => writer.builder.ins().fadd(a, b),
+        O::Subtract => writer.builder.ins().fsub(a, b),
+        O::Multiply => writer.builder.ins().fmul(a, b),
+        O::Divide => writer.builder.ins().fdiv(a, b),
+        O::Negate => writer.builder.ins().fneg(a),
+        O::Absolute => writer.builder.ins().fabs(a),
+        O::SquareRoot => writer.builder.ins().sqrt(a),
+        O::Floor => writer.builder.ins().floor(a),
+        O::Ceil => writer.builder.ins().ceil(a),
+        O::Round => writer.builder.ins().nearest(a),
+        O::Truncate => writer.builder.ins().trunc(a),
+        O::Sign => sign(writer, a),
+        O::Minimum => extremum(writer, a, [a, b], b),
+        O::Maximum => extremum(writer, a, [b, a], b),
+        O::Less => truth(writer, FloatCC::LessThan, a, b),
+        O::LessOrEqual => truth(writer, FloatCC::LessThanOrEqual, a, b),
+        O::Equal => truth(writer, FloatCC::Equal, a, b),
+        O::Select => select(writer, a, b, c),
+        called => unreachable!("{called:?} is called"),
+    }
+}
+
+/// a where it is positive or negative no more: 1, −1, or a itself when it is zero or NaN.
+fn sign(writer: &mut Writer<'_, '_>, a: Value) -> Value {
+    let [zero, one, minus_one] = [0.0, 1.0, -1.0].map(|value| writer.constant(value));
+    let negative = writer.compare(FloatCC::LessThan, a, zero);
+    let positive = writer.compare(FloatCC::LessThan, zero, a);
+    let unless_positive = writer.choose(negative, minus_one, a);
+    writer.choose(positive, one, unless_positive)
+}
+
+/// a where it is NaN or `less` is in ascending order, else b. Written so that the inner choice is one instruction on x86.
+fn extremum(writer: &mut Writer<'_, '_>, a: Value, less: [Value; 2], b: Value) -> Value {
+    let chosen = writer.compare(FloatCC::LessThan, less[0], less[1]);
+    let extremum = writer.choose(chosen, a, b);
+    let undefined = writer.is_nan(a);
+    writer.choose(undefined, a, extremum)
+}
+
+/// 1 where the condition holds, 0 where it does not, NaN where a side is.
+fn truth(writer: &mut Writer<'_, '_>, condition: FloatCC, a: Value, b: Value) -> Value {
+    let [zero, one, nan] = [0.0, 1.0, f64::NAN].map(|value| writer.constant(value));
+    let holds = writer.compare(condition, a, b);
+    let undefined = writer.compare(FloatCC::Unordered, a, b);
+    let truth = writer.choose(holds, one, zero);
+    writer.choose(undefined, nan, truth)
+}
+
+/// b where a is not zero, c where it is, a where it is NaN.
+fn select(writer: &mut Writer<'_, '_>, a: Value, b: Value, c: Value) -> Value {
+    let zero = writer.constant(0.0);
+    let refused = writer.compare(FloatCC::Equal, a, zero);
+    let undefined = writer.is_nan(a);
+    let chosen = writer.choose(refused, c, b);
+    writer.choose(undefined, a, chosen)
+}
