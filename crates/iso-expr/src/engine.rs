@@ -103,7 +103,7 @@ pub struct Scratch {
 
 impl Scratch {
     /// Room for `count` doubles of any value, allocated only when it is more than ever before.
-    pub(crate) fn values(&mut self, count: usize) -> &mut [f64] {
+    pub fn values(&mut self, count: usize) -> &mut [f64] {
         if self.values.len() < count {
             self.values.resize(count, 0.0);
         }
@@ -116,16 +116,6 @@ impl Scratch {
             self.enclosures.resize(count, Decorated::EMPTY);
         }
         &mut self.enclosures[..count]
-    }
-}
-
-impl Scratch {
-    /// Room for `count` doubles, with whatever was left there.
-    pub fn values(&mut self, count: usize) -> &mut [f64] {
-        if self.values.len() < count {
-            self.values.resize(count, 0.0);
-        }
-        &mut self.values[..count]
     }
 }
 
