@@ -4,16 +4,36 @@
 //! A [`Surface`] offers the kernels of F − C, whatever engine made them. A [`Tracer`] is a method of intersection: it says
 //! for every [`Ray`] how its search for the first root inside the [`Region`] ended, an [`Outcome`].
 
+mod batch;
+#[cfg(test)]
+mod closed_forms;
 mod counters;
-mod normal;
+mod direct;
+mod error;
+mod existence;
+mod grid;
+mod lattice;
+mod lockstep;
+mod normals;
 mod ray;
 mod region;
+mod search;
+mod settings;
+mod sign;
+mod stretch;
 mod surface;
+#[cfg(test)]
+mod testing;
 mod tracer;
+mod walk;
 
 pub use counters::Counters;
-pub use normal::normals;
+pub use direct::Direct;
+pub use error::GridError;
+pub use grid::Grid;
+pub use normals::normals;
 pub use ray::{Ray, Span};
 pub use region::{Region, RegionError};
+pub use settings::GridSettings;
 pub use surface::Surface;
 pub use tracer::{Hit, Outcome, Tracer, Workspace};

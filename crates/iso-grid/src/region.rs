@@ -76,8 +76,11 @@ impl Region {
     }
 
     /// The part of `ray` with t ≥ 0 inside the box, by the slab method (Kay and Kajiya 1986), in doubles rounded to
-    /// nearest. `None` when the ray misses the box or only touches it.
+    /// nearest. `None` when the ray misses the box or only touches it, and when a component of it is infinite or NaN.
     pub fn clip(&self, ray: &Ray) -> Option<Span> {
+        if !(ray.origin.is_finite() && ray.direction.is_finite()) {
+            return None;
+        }
         let (mut start, mut end) = (0.0_f64, f64::INFINITY);
         for axis in 0..3 {
             let (origin, direction) = (ray.origin[axis], ray.direction[axis]);

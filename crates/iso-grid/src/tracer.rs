@@ -2,6 +2,7 @@
 
 use iso_expr::Scratch;
 
+use crate::batch::PointBatch;
 use crate::{Counters, Ray, Span};
 
 /// A point of the surface on a ray.
@@ -44,4 +45,6 @@ pub struct Workspace {
     pub scratch: Scratch,
     /// What was done with this workspace so far.
     pub counters: Counters,
+    /// Points for the kernels, and their values.
+    pub(crate) points: PointBatch,
 }

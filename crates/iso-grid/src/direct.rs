@@ -1,0 +1,69 @@
+//! The paper's method without a grid.
+
+use std::sync::Arc;
+
+use iso_expr::BatchKernel;
+
+use crate::settings::check_step;
+use crate::stretch::{Spacing, Stretch, Stretches};
+use crate::{Counters, GridError, Outcome, Ray, Region, Surface, Tracer, Workspace, lockstep};
+
+/// Samples each ray through the whole region and bisects at the first change of sign: the paper's N = 0.
+///
+/// Without cells there is nothing to measure the distance between samples by, so it is that of a grid with
+/// [`Direct::CELLS`] cells along the region's longest side: at the default step of 1/20, no more than 1/600 of that side.
+///
+/// It misses pairs of roots between neighbouring samples, roots where F − C does not change sign, and takes poles that
+/// change sign for roots. A sample that is exactly zero is a root: a [`Outcome::Hit`] when the signs before and behind it
+/// differ, otherwise a [`Outcome::Touch`].
+pub struct Direct {
+    values: Arc<dyn BatchKernel>,
+    region: Region,
+    spacing: Spacing,
+}
+
+impl Direct {
+    /// The cells along the region's longest side of the grid whose samples are as close.
+    pub const CELLS: u32 = 30;
+
+    /// Prepares the method. `step` is the largest distance between samples as a part of 1/[`Direct::CELLS`] of the
+    /// region's longest side, from [`GridSettings::LEAST_STEP`](crate::GridSettings::LEAST_STEP) to 1.
+    ///
+    /// # Errors
+    /// When `step` is out of range or the engine cannot compile F − C.
+    pub fn new(surface: &Surface, region: Region, step: f64) -> Result<Self, GridError> {
+        check_step(step)?;
+        let cells = f64::from(Self::CELLS);
+        let spacing = Spacing::new(step, region.extent().max_element() / cells, cells);
+        Ok(Self { values: Arc::clone(surface.values()?), region, spacing })
+    }
+}
+
+impl Tracer for Direct {
+    fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]) {
+        lockstep::trace(&*self.values, &self.region, workspace, rays, outcomes, |ray, span| {
+            Whole(Some(self.spacing.stretch(ray.direction, span)))
+        });
+    }
+
+    fn preprocessing(&self) -> Counters {
+        Counters::default()
+    }
+}
+
+/// The whole of a ray inside the region, until it is taken.
+struct Whole(Option<Stretch>);
+
+impl Iterator for Whole {
+    type Item = Stretch;
+
+    fn next(&mut self) -> Option<Stretch> {
+        self.0.take()
+    }
+}
+
+impl Stretches for Whole {
+    fn steps(&self) -> u64 {
+        0
+    }
+}

@@ -1,0 +1,105 @@
+//! The paper's method.
+
+use std::sync::Arc;
+
+use iso_expr::BatchKernel;
+
+use crate::existence::Cells;
+use crate::lattice::Lattice;
+use crate::stretch::{Spacing, Stretch, Stretches};
+use crate::walk::CellWalk;
+use crate::{Counters, GridError, GridSettings, Outcome, Ray, Region, Surface, Tracer, Workspace, lockstep};
+
+/// The paper's method: a grid that knows which of its cells hold the surface.
+///
+/// Preprocessing takes the sign of F − C at every grid point. A cell whose corners differ in sign is an existence cell.
+/// Every other cell that shares a face, an edge or a corner with an existence cell is examined again: the corners of its
+/// parts are evaluated, and at the first that differs it becomes an existence cell, whose neighbours are examined in turn.
+/// No cell is examined twice.
+///
+/// A ray walks from cell to cell. In existence cells it is sampled; where F − C changes sign between samples, bisection
+/// gives the point, down to neighbouring doubles. Samples are joined across faces between existence cells.
+///
+/// Zero has both signs, so a surface through grid points is found, and so is a sample that happens to be zero: a
+/// [`Outcome::Hit`] when the signs before and behind it differ, otherwise a [`Outcome::Touch`]. NaN and infinite values
+/// have no sign.
+///
+/// It misses what is smaller than a cell and far from what it found, pairs of roots between neighbouring samples, roots
+/// where F − C does not change sign, and takes poles that change sign for roots.
+pub struct Grid {
+    values: Arc<dyn BatchKernel>,
+    region: Region,
+    lattice: Lattice,
+    cells: Cells,
+    spacing: Spacing,
+    preprocessing: Counters,
+}
+
+impl Grid {
+    /// The most cells, all axes together; each takes two bytes.
+    pub const MOST_CELLS: u128 = 1 << 28;
+
+    /// Prepares the method: evaluates F − C at the grid's points, over all threads, and finds the existence cells.
+    ///
+    /// # Errors
+    /// When a setting is out of range, the grid has more than [`Grid::MOST_CELLS`] cells, or the engine cannot compile
+    /// F − C.
+    pub fn new(surface: &Surface, region: Region, settings: &GridSettings) -> Result<Self, GridError> {
+        settings.check()?;
+        if settings.count() > Self::MOST_CELLS {
+            let (given, allowed) = (settings.count(), Self::MOST_CELLS);
+            return Err(GridError::TooManyCells { method: "grid", given, allowed });
+        }
+        let values = Arc::clone(surface.values()?);
+        let lattice = Lattice::new(&region, settings.cells);
+        let mut preprocessing = Counters::default();
+        let cells = Cells::find(&*values, &lattice, settings.refinement, &mut preprocessing);
+        let spacing = Spacing::new(settings.step, lattice.largest_side(), 1.0);
+        Ok(Self { values, region, lattice, cells, spacing, preprocessing })
+    }
+}
+
+impl Tracer for Grid {
+    fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]) {
+        lockstep::trace(&*self.values, &self.region, workspace, rays, outcomes, |ray, span| {
+            ExistenceStretches {
+                grid: self,
+                walk: CellWalk::new(&self.lattice, *ray, span),
+                ray: *ray,
+                steps: 0,
+            }
+        });
+    }
+
+    fn preprocessing(&self) -> Counters {
+        self.preprocessing
+    }
+}
+
+/// A ray's passages through existence cells.
+struct ExistenceStretches<'a> {
+    grid: &'a Grid,
+    walk: CellWalk<'a>,
+    ray: Ray,
+    steps: u64,
+}
+
+impl Iterator for ExistenceStretches<'_> {
+    type Item = Stretch;
+
+    fn next(&mut self) -> Option<Stretch> {
+        loop {
+            let passage = self.walk.next()?;
+            self.steps += 1;
+            if self.grid.cells.holds_surface(passage.place) {
+                return Some(self.grid.spacing.stretch(self.ray.direction, passage.span));
+            }
+        }
+    }
+}
+
+impl Stretches for ExistenceStretches<'_> {
+    fn steps(&self) -> u64 {
+        self.steps
+    }
+}

@@ -1,0 +1,218 @@
+//! The search for the first change of sign along one ray.
+
+use crate::batch::PointBatch;
+use crate::sign::Signs;
+use crate::stretch::{Stretch, Stretches};
+use crate::{Hit, Outcome, Ray, Span};
+
+/// Samples asked for at once. Those behind the first change of sign are wasted, so there are few.
+const BLOCK: usize = 8;
+
+/// Samples the stretches of a ray in order and halves the first interval whose ends have unlike signs, down to
+/// neighbouring doubles.
+///
+/// The search owns no kernel: it asks for points and is answered with the values there, so that many searches share one
+/// call of a kernel. What it asks for depends on its own answers alone.
+///
+/// It knows nothing but signs, as the paper's method does. A pole that changes sign looks like a root, and is reported
+/// as one. Two roots between neighbouring samples look like none.
+pub(crate) struct Search<S> {
+    ray: Ray,
+    stretches: S,
+    sampled: Option<Sampled>,
+    block: [Sample; BLOCK],
+    asked: usize,
+    read: usize,
+    previous: Option<Sample>,
+    stage: Stage,
+}
+
+/// The stretch being sampled, and the step that comes next.
+#[derive(Clone, Copy)]
+struct Sampled {
+    stretch: Stretch,
+    step: u32,
+}
+
+/// F − C at a point of the ray.
+#[derive(Clone, Copy)]
+struct Sample {
+    t: f64,
+    value: f64,
+    /// Whether the sample before it is its neighbour: nothing between them was left out.
+    joined: bool,
+}
+
+impl Sample {
+    const UNASKED: Self = Self { t: 0.0, value: f64::NAN, joined: false };
+
+    fn signs(&self) -> Signs {
+        Signs::of(self.value)
+    }
+}
+
+/// What the search is doing.
+#[derive(Clone, Copy)]
+enum Stage {
+    /// Looking for samples of unlike sign.
+    Sampling,
+    /// Halving the interval between two samples of unlike sign.
+    Halving(Bracket),
+    /// Looking what sign there is behind a zero.
+    Passing(Bracket),
+}
+
+/// An interval whose ends have unlike signs; the second end may be a zero.
+#[derive(Clone, Copy)]
+struct Bracket {
+    before: Sample,
+    after: Sample,
+    /// The distance between the samples that it began as.
+    step: f64,
+}
+
+impl Bracket {
+    /// The middle, unless the ends are neighbouring doubles.
+    fn middle(&self) -> Option<f64> {
+        let middle = self.before.t + 0.5 * (self.after.t - self.before.t);
+        (self.before.t < middle && middle < self.after.t).then_some(middle)
+    }
+
+    /// The root, where F − C is nearer to zero.
+    fn hit(&self) -> Hit {
+        let nearer = if self.before.value.abs() < self.after.value.abs() { self.before } else { self.after };
+        Hit { t: nearer.t, bracket: Span { start: self.before.t, end: self.after.t } }
+    }
+}
+
+impl<S: Stretches> Search<S> {
+    pub(crate) fn new(ray: Ray, stretches: S) -> Self {
+        Self {
+            ray,
+            stretches,
+            sampled: None,
+            block: [Sample::UNASKED; BLOCK],
+            asked: 0,
+            read: 0,
+            previous: None,
+            stage: Stage::Sampling,
+        }
+    }
+
+    /// How many cells were walked through so far.
+    pub(crate) fn steps(&self) -> u64 {
+        self.stretches.steps()
+    }
+
+    /// Adds the points where F − C is to be known next, and says how many.
+    pub(crate) fn ask(&mut self, points: &mut PointBatch) -> usize {
+        match self.stage {
+            Stage::Sampling => self.ask_for_block(points),
+            Stage::Halving(bracket) => bracket.middle().map_or(0, |middle| self.ask_for(points, middle)),
+            Stage::Passing(bracket) => self.ask_for(points, bracket.after.t + bracket.step),
+        }
+    }
+
+    /// Takes the values at the points last asked for, and says how the search ended if it did.
+    pub(crate) fn answer(&mut self, values: &[f64]) -> Option<Outcome> {
+        match (self.stage, values) {
+            (Stage::Sampling, []) => return Some(Outcome::Miss),
+            (Stage::Sampling, _) => {
+                for (sample, &value) in self.block.iter_mut().zip(values) {
+                    sample.value = value;
+                }
+                self.read = 0;
+            }
+            (Stage::Halving(bracket), &[value]) => return self.halve(bracket, value),
+            (Stage::Halving(bracket), _) if bracket.after.value == 0.0 => {
+                self.stage = Stage::Passing(bracket);
+                return None;
+            }
+            (Stage::Halving(bracket), _) => return Some(Outcome::Hit(bracket.hit())),
+            (Stage::Passing(bracket), _) => {
+                let behind: Signs = values.iter().map(|&value| Signs::of(value)).collect();
+                let crossed = !behind.differ() && (bracket.before.signs() | behind).differ();
+                return Some(if crossed {
+                    Outcome::Hit(bracket.hit())
+                } else {
+                    Outcome::Touch(bracket.hit())
+                });
+            }
+        }
+        self.read_block()
+    }
+
+    fn ask_for(&self, points: &mut PointBatch, t: f64) -> usize {
+        points.push(self.ray.at(t));
+        1
+    }
+
+    fn ask_for_block(&mut self, points: &mut PointBatch) -> usize {
+        self.asked = 0;
+        while self.asked < BLOCK {
+            let Some(sample) = self.next_sample() else { break };
+            points.push(self.ray.at(sample.t));
+            self.block[self.asked] = sample;
+            self.asked += 1;
+        }
+        self.asked
+    }
+
+    /// The next sample to be taken. Where a stretch begins at the end of the last one, its first sample is the other's
+    /// last one.
+    fn next_sample(&mut self) -> Option<Sample> {
+        let (sampled, joined) = match self.sampled {
+            Some(Sampled { stretch, step }) if step < stretch.steps => {
+                (Sampled { stretch, step: step + 1 }, true)
+            }
+            last => {
+                let stretch = self.stretches.next()?;
+                let joined = last.is_some_and(|last| last.stretch.span.end == stretch.span.start);
+                (Sampled { stretch, step: u32::from(joined) }, joined)
+            }
+        };
+        self.sampled = Some(sampled);
+        Some(Sample { t: sampled.stretch.sample(sampled.step), value: f64::NAN, joined })
+    }
+
+    /// Goes on through the block's samples to the next change of sign.
+    fn read_block(&mut self) -> Option<Outcome> {
+        while self.read < self.asked {
+            let sample = self.block[self.read];
+            self.read += 1;
+            let before = self.previous.replace(sample).filter(|_| sample.joined);
+            let known = before.map_or(Signs::NONE, |before| before.signs());
+            match before {
+                Some(before) if known != Signs::NONE && (known | sample.signs()).differ() => {
+                    self.stage = Stage::Halving(Bracket { before, after: sample, step: sample.t - before.t });
+                    return None;
+                }
+                _ if sample.signs().differ() => return Some(touch(sample.t)),
+                _ => {}
+            }
+        }
+        None
+    }
+
+    /// Keeps the half of a bracket whose ends have unlike signs. Where F − C is undefined in the middle, the bracket is
+    /// given up and the search goes on behind it.
+    fn halve(&mut self, mut bracket: Bracket, value: f64) -> Option<Outcome> {
+        let middle = Sample { t: bracket.middle()?, value, joined: true };
+        if middle.signs() == Signs::NONE {
+            self.stage = Stage::Sampling;
+            return if bracket.after.value == 0.0 { Some(touch(bracket.after.t)) } else { self.read_block() };
+        }
+        if middle.signs() == bracket.before.signs() {
+            bracket.before = middle;
+        } else {
+            bracket.after = middle;
+        }
+        self.stage = Stage::Halving(bracket);
+        None
+    }
+}
+
+/// A zero without a neighbour to compare its sign with.
+fn touch(t: f64) -> Outcome {
+    Outcome::Touch(Hit { t, bracket: Span { start: t, end: t } })
+}

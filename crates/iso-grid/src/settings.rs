@@ -1,0 +1,64 @@
+//! What a user may set of the paper's methods.
+
+use crate::GridError;
+
+/// How the paper's methods cut the region and sample rays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridSettings {
+    /// Ni, Nj, Nk: the cells along x, y and z, each at least 1.
+    pub cells: [u32; 3],
+    /// Mi, Mj, Mk: the parts into which a cell is cut along x, y and z when it is examined again, 1 to
+    /// [`GridSettings::LARGEST_REFINEMENT`]. One part along each axis has no new corners: nothing is found again.
+    pub refinement: [u32; 3],
+    /// The largest distance between samples along a ray, as a part of a cell's largest side: from
+    /// [`GridSettings::LEAST_STEP`] to 1.
+    pub step: f64,
+}
+
+impl GridSettings {
+    /// The distance between samples that the paper uses: 1/20 of a cell.
+    pub const STEP: f64 = 0.05;
+    /// The least distance between samples, below which a ray would take hours.
+    pub const LEAST_STEP: f64 = 1e-6;
+    /// The most parts along an axis into which a cell is cut when it is examined again.
+    pub const LARGEST_REFINEMENT: u32 = 64;
+
+    /// The paper's settings for a grid of these cells: samples 1/20 of a cell apart, and cells examined again in 2 parts
+    /// along an axis of more than 20 cells, in 3 parts along a shorter one.
+    pub fn new(cells: [u32; 3]) -> Self {
+        Self { cells, refinement: cells.map(|count| if count > 20 { 2 } else { 3 }), step: Self::STEP }
+    }
+
+    /// Checks all that does not depend on the method.
+    pub(crate) fn check(&self) -> Result<(), GridError> {
+        for (axis, (&cells, &parts)) in
+            ['x', 'y', 'z'].into_iter().zip(self.cells.iter().zip(&self.refinement))
+        {
+            if cells == 0 {
+                return Err(GridError::NoCells { axis });
+            }
+            if !(1..=Self::LARGEST_REFINEMENT).contains(&parts) {
+                return Err(GridError::Refinement { axis, given: parts, allowed: Self::LARGEST_REFINEMENT });
+            }
+        }
+        check_step(self.step)
+    }
+
+    /// How many cells the grid has.
+    pub(crate) fn count(&self) -> u128 {
+        self.cells.iter().map(|&cells| u128::from(cells)).product()
+    }
+}
+
+impl Default for GridSettings {
+    /// 30 cells along each axis, in the middle of the sizes that the paper compares.
+    fn default() -> Self {
+        Self::new([30; 3])
+    }
+}
+
+/// Checks a distance between samples, as a part of a cell's largest side.
+pub(crate) fn check_step(step: f64) -> Result<(), GridError> {
+    let least = GridSettings::LEAST_STEP;
+    if (least..=1.0).contains(&step) { Ok(()) } else { Err(GridError::Step { given: step, least }) }
+}
