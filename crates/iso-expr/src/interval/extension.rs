@@ -1,8 +1,21 @@
-//! Interval extensions of operations.
+//! Interval extensions of operations, under the names by which the table of operations knows them.
 
-use super::{Decorated, Decoration, Interval};
+use super::Decorated;
+
+pub(crate) use super::angle::atan2;
+pub(crate) use super::arithmetic::{absolute, add, divide, maximum, minimum, multiply, negate, subtract};
+pub(crate) use super::elementary::{
+    acos, acosh, asin, asinh, atan, atanh, cosh, exp, exp_m1, exp2, ln, ln_1p, log2, log10, sinh, tanh,
+};
+pub(crate) use super::modulo::modulo;
+pub(crate) use super::periodic::{cos, sin, tan};
+pub(crate) use super::power::{cube_root, hypotenuse, integer_power, power, square_root};
+pub(crate) use super::steps::{ceil, equal, floor, less, less_or_equal, round, select, sign, truncate};
 
 /// The interval extension of an operation, by arity.
+///
+/// Every extension contains the real values of its operation, is isotone (smaller operands give a smaller result), and
+/// takes any operands, empty and unbounded ones included.
 #[derive(Clone, Copy, Debug)]
 pub enum Extension {
     /// Of one operand.
@@ -11,21 +24,4 @@ pub enum Extension {
     Binary(fn(Decorated, Decorated) -> Decorated),
     /// Of three operands.
     Ternary(fn(Decorated, Decorated, Decorated) -> Decorated),
-}
-
-/// What holds for every function: it may be anything, anywhere.
-const NOTHING_KNOWN: Decorated = Decorated { interval: Interval::ENTIRE, decoration: Decoration::Trivial };
-
-macro_rules! unknown {
-    ($($function:ident($($operand:ident),*);)*) => {
-        $(pub(crate) fn $function($($operand: Decorated),*) -> Decorated { $(let _ = $operand;)* NOTHING_KNOWN })*
-    };
-}
-
-unknown! {
-    add(a, b); subtract(a, b); multiply(a, b); divide(a, b); negate(a); absolute(a); sign(a); minimum(a, b);
-    maximum(a, b); integer_power(a, b); power(a, b); square_root(a); cube_root(a); hypotenuse(a, b); exp(a); exp2(a);
-    exp_m1(a); ln(a); log2(a); log10(a); ln_1p(a); sin(a); cos(a); tan(a); asin(a); acos(a); atan(a); atan2(a, b);
-    sinh(a); cosh(a); tanh(a); asinh(a); acosh(a); atanh(a); floor(a); ceil(a); round(a); truncate(a); modulo(a, b);
-    less(a, b); less_or_equal(a, b); equal(a, b); select(a, b, c);
 }

@@ -1,0 +1,89 @@
+//! Sine, cosine and tangent.
+//!
+//! Each is monotone on pieces of length π. Which piece an end lies on is decided exactly: by its quotient with π where
+//! the error of that quotient leaves no doubt, and else by the sign of a correctly rounded sine or cosine, which is that
+//! of the real one. (No double but zero is a multiple of π/2.)
+
+use std::f64::consts::FRAC_1_PI;
+
+use super::rounding::{greater, lesser, round_down, round_up};
+use super::{Decorated, Interval};
+
+/// Ends beyond this are not reduced: only points are enclosed tightly there.
+const LARGEST_REDUCED: f64 = (1u64 << 45) as f64;
+
+/// The pieces of a function whose extremes or poles are at (n + `shift`)·π for all integers n.
+struct Pieces {
+    shift: f64,
+    /// Has the sign of (−1)ⁿ just above (n + `shift`)·π, and the other one just below.
+    side: fn(f64) -> f64,
+}
+
+/// Between the extremes of the cosine.
+const HALF_WAVES_OF_COSINE: Pieces = Pieces { shift: 0.0, side: core_math::sin };
+/// Between the extremes of the sine, which are the poles of the tangent.
+const HALF_WAVES_OF_SINE: Pieces = Pieces { shift: 0.5, side: |x| -core_math::cos(x) };
+
+impl Pieces {
+    /// The n for which `x` lies from (n + shift)·π to (n + 1 + shift)·π. `x` is not beyond [`LARGEST_REDUCED`].
+    fn index(&self, x: f64) -> i64 {
+        let turns = x * FRAC_1_PI - self.shift;
+        let nearest = turns.round_ties_even();
+        // Three roundings (of 1/π, the product and the difference), each of at most half an ulp.
+        let error = (turns.abs() + 1.0) * (2.0 * f64::EPSILON);
+        if (turns - nearest).abs() > error {
+            return turns.floor() as i64;
+        }
+        let nearest = nearest as i64;
+        let side = (self.side)(x);
+        let is_above = if nearest & 1 == 0 { side >= 0.0 } else { side <= 0.0 };
+        if is_above { nearest } else { nearest - 1 }
+    }
+
+    /// The pieces on which the ends lie; None where that is not decided.
+    fn of(&self, interval: Interval) -> Option<(i64, i64)> {
+        if interval.is_point() {
+            return Some((0, 0));
+        }
+        (interval.magnitude() <= LARGEST_REDUCED).then(|| (self.index(interval.lo), self.index(interval.hi)))
+    }
+}
+
+/// A function that has the value 1 at the even ends of its pieces and −1 at the odd ones.
+#[inline]
+fn wave(interval: Interval, pieces: &Pieces, function: fn(f64) -> f64) -> Interval {
+    const FULL: Interval = Interval { lo: -1.0, hi: 1.0 };
+    if interval.is_empty() {
+        return interval;
+    }
+    let Some((first, last)) = pieces.of(interval).filter(|(first, last)| last - first < 2) else {
+        return FULL;
+    };
+    let (p, q) = (function(interval.lo), function(interval.hi));
+    let passes = |extreme_is_odd: bool| first != last && (last & 1 == 1) == extreme_is_odd;
+    let lo = if passes(true) { -1.0 } else { greater(-1.0, round_down(lesser(p, q))) };
+    let hi = if passes(false) { 1.0 } else { lesser(1.0, round_up(greater(p, q))) };
+    Interval { lo, hi }
+}
+
+pub(crate) fn sin(a: Decorated) -> Decorated {
+    Decorated { interval: wave(a.interval, &HALF_WAVES_OF_SINE, core_math::sin), decoration: a.decoration }
+}
+
+pub(crate) fn cos(a: Decorated) -> Decorated {
+    Decorated { interval: wave(a.interval, &HALF_WAVES_OF_COSINE, core_math::cos), decoration: a.decoration }
+}
+
+/// Undefined at its poles; anything where one is inside.
+pub(crate) fn tan(a: Decorated) -> Decorated {
+    let Interval { lo, hi } = a.interval;
+    if a.interval.is_empty() {
+        return Decorated::UNDEFINED;
+    }
+    let same_piece = HALF_WAVES_OF_SINE.of(a.interval).is_some_and(|(first, last)| first == last);
+    if !same_piece {
+        return Decorated { interval: Interval::ENTIRE, ..Decorated::UNDEFINED };
+    }
+    let interval = Interval { lo: round_down(core_math::tan(lo)), hi: round_up(core_math::tan(hi)) };
+    Decorated::enclosing(interval, a.decoration)
+}
