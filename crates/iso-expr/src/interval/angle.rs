@@ -14,7 +14,7 @@ const FULL_TURN: Interval = Interval { lo: -PI.next_up(), hi: PI.next_up() };
 pub(crate) fn atan2(a: Decorated, b: Decorated) -> Decorated {
     let (y, x) = (a.interval, b.interval);
     if y.is_empty() | x.is_empty() {
-        return Decorated::UNDEFINED;
+        return Decorated::EMPTY;
     }
     let touches_axis = y.contains_zero() & (x.lo < 0.0);
     let interval = if touches_axis & (y.lo < 0.0) {

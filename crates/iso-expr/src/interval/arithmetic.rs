@@ -141,7 +141,7 @@ pub(crate) fn maximum(a: Decorated, b: Decorated) -> Decorated {
 fn end_by_end(a: Decorated, b: Decorated, choose: impl Fn(f64, f64) -> f64) -> Decorated {
     let (u, v) = (a.interval, b.interval);
     if u.is_empty() | v.is_empty() {
-        return Decorated::UNDEFINED;
+        return Decorated::EMPTY;
     }
     let interval = Interval { lo: choose(u.lo, v.lo), hi: choose(u.hi, v.hi) };
     Decorated { interval, decoration: a.decoration.min(b.decoration) }

@@ -35,20 +35,19 @@ pub struct Decorated {
 
 impl Decorated {
     /// The enclosure of a function that is nowhere defined.
-    pub const UNDEFINED: Self = Self { interval: Interval::EMPTY, decoration: Decoration::Trivial };
+    pub const EMPTY: Self = Self { interval: Interval::EMPTY, decoration: Decoration::Trivial };
 
-    /// The strongest decoration that an interval can have by itself, as an argument or a constant: `Common` if it is
-    /// bounded, `Continuous` if not, `Trivial` if it is empty.
-    #[inline]
-    pub fn new(interval: Interval) -> Self {
-        if interval.is_empty() { Self::UNDEFINED } else { Self::enclosing(interval, Decoration::Common) }
-    }
-
-    /// An argument that runs from `lo` to `hi`; empty if one is NaN, they are in the wrong order, or no real number is
-    /// between them. Box kernels read their boxes by this rule.
+    /// An argument that runs from `lo` to `hi`: common where that is bounded, continuous where it is not. It is empty when
+    /// no real number lies between the ends, as when one of them is NaN. Box kernels read their boxes by this rule.
     #[inline]
     pub fn argument(lo: f64, hi: f64) -> Self {
-        Interval::new(lo, hi).map_or(Self::UNDEFINED, Self::new)
+        Interval::new(lo, hi).map_or(Self::EMPTY, |interval| Self::enclosing(interval, Decoration::Common))
+    }
+
+    /// A constant that lies in `enclosure`.
+    #[inline]
+    pub fn constant(enclosure: Interval) -> Self {
+        Self::argument(enclosure.lo, enclosure.hi)
     }
 
     /// `interval` with `decoration`, or `Continuous` where that promises a bounded enclosure and it is not.

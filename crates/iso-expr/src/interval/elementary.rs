@@ -26,7 +26,7 @@ fn clipped_to_one(a: Decorated) -> Decorated {
 fn logarithm(a: Decorated, pole: f64, function: impl Fn(f64) -> f64) -> Decorated {
     let Interval { lo, hi } = a.interval;
     if hi <= pole {
-        return Decorated::UNDEFINED;
+        return Decorated::EMPTY;
     }
     let interval = Interval { lo: greater(pole, lo), hi };
     rising(Decorated { interval, ..a }, function).trivial_unless(lo > pole)
@@ -99,7 +99,7 @@ pub(crate) fn asinh(a: Decorated) -> Decorated {
 pub(crate) fn acosh(a: Decorated) -> Decorated {
     let Interval { lo, hi } = a.interval;
     if hi < 1.0 {
-        return Decorated::UNDEFINED;
+        return Decorated::EMPTY;
     }
     let interval = Interval { lo: greater(1.0, lo), hi };
     rising(Decorated { interval, ..a }, core_math::acosh).trivial_unless(lo >= 1.0)
@@ -110,7 +110,7 @@ pub(crate) fn acosh(a: Decorated) -> Decorated {
 pub(crate) fn atanh(a: Decorated) -> Decorated {
     let Interval { lo, hi } = a.interval;
     if (hi <= -1.0) | (lo >= 1.0) {
-        return Decorated::UNDEFINED;
+        return Decorated::EMPTY;
     }
     rising(clipped_to_one(a), core_math::atanh).trivial_unless((lo > -1.0) & (hi < 1.0))
 }

@@ -129,24 +129,3 @@ impl PartialEq for Interval {
         (self.is_empty() && other.is_empty()) || (self.lo == other.lo && self.hi == other.hi)
     }
 }
-
-impl Decorated {
-    /// The empty set, of which nothing is known.
-    pub const EMPTY: Self = Self { interval: Interval::EMPTY, decoration: Decoration::Trivial };
-
-    /// An argument that runs from `lo` to `hi`: common where that is bounded, continuous where it is not. It is empty when
-    /// no real number lies between the ends, as when one of them is NaN.
-    pub fn argument(lo: f64, hi: f64) -> Self {
-        if !(lo <= hi && lo < f64::INFINITY && hi > f64::NEG_INFINITY) {
-            return Self::EMPTY;
-        }
-        let is_bounded = lo.is_finite() && hi.is_finite();
-        let decoration = if is_bounded { Decoration::Common } else { Decoration::Continuous };
-        Self { interval: Interval { lo, hi }, decoration }
-    }
-
-    /// A constant that lies in `enclosure`.
-    pub fn constant(enclosure: Interval) -> Self {
-        Self::argument(enclosure.lo, enclosure.hi)
-    }
-}

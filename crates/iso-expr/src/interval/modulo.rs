@@ -7,7 +7,7 @@ use super::{Decorated, Decoration, Interval};
 /// a − b·⌊a/b⌋. Undefined where b is zero; jumps where a/b is an integer.
 pub(crate) fn modulo(a: Decorated, b: Decorated) -> Decorated {
     if a.interval.is_empty() | b.interval.is_empty() | (b.interval == Interval::point(0.0)) {
-        Decorated::UNDEFINED
+        Decorated::EMPTY
     } else if b.interval.contains_zero() {
         b.at_most(Decoration::Trivial)
     } else if b.interval.hi < 0.0 {

@@ -78,11 +78,11 @@ pub(crate) fn cos(a: Decorated) -> Decorated {
 pub(crate) fn tan(a: Decorated) -> Decorated {
     let Interval { lo, hi } = a.interval;
     if a.interval.is_empty() {
-        return Decorated::UNDEFINED;
+        return Decorated::EMPTY;
     }
     let same_piece = HALF_WAVES_OF_SINE.of(a.interval).is_some_and(|(first, last)| first == last);
     if !same_piece {
-        return Decorated { interval: Interval::ENTIRE, ..Decorated::UNDEFINED };
+        return Decorated { interval: Interval::ENTIRE, ..Decorated::EMPTY };
     }
     let interval = Interval { lo: round_down(core_math::tan(lo)), hi: round_up(core_math::tan(hi)) };
     Decorated::enclosing(interval, a.decoration)

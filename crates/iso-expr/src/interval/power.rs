@@ -72,7 +72,7 @@ fn power_rounded(base: f64, exponent: u32, round: impl Fn(f64) -> f64) -> f64 {
 #[inline]
 pub(crate) fn integer_power(a: Decorated, exponent: Decorated) -> Decorated {
     if a.interval.is_empty() {
-        return Decorated::UNDEFINED;
+        return Decorated::EMPTY;
     }
     Decorated::enclosing(a.interval.to_the(exponent.interval.lo as u32), a.decoration)
 }
@@ -95,7 +95,7 @@ pub(crate) fn cube_root(a: Decorated) -> Decorated {
 pub(crate) fn hypotenuse(a: Decorated, b: Decorated) -> Decorated {
     let (u, v) = (a.interval.absolute(), b.interval.absolute());
     if u.is_empty() | v.is_empty() {
-        return Decorated::UNDEFINED;
+        return Decorated::EMPTY;
     }
     let (lo, hi) = (round_down(core_math::hypot(u.lo, v.lo)), round_up(core_math::hypot(u.hi, v.hi)));
     Decorated::enclosing(Interval { lo, hi }, a.decoration.min(b.decoration))
@@ -105,7 +105,7 @@ pub(crate) fn hypotenuse(a: Decorated, b: Decorated) -> Decorated {
 pub(crate) fn power(a: Decorated, b: Decorated) -> Decorated {
     let (base, exponent) = (a.interval, b.interval);
     if base.is_empty() | exponent.is_empty() | (base.hi < 0.0) {
-        return Decorated::UNDEFINED;
+        return Decorated::EMPTY;
     }
     let interval = if base.hi == 0.0 { power_of_zero(exponent) } else { power_of_positive(base, exponent) };
     let defined = (base.lo > 0.0) | ((base.lo == 0.0) & (exponent.lo >= 0.0));

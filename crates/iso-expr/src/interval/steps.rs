@@ -67,7 +67,7 @@ enum Verdict {
 #[inline]
 fn comparison(a: Decorated, b: Decorated, verdict: impl Fn(Interval, Interval) -> Verdict) -> Decorated {
     if a.interval.is_empty() | b.interval.is_empty() {
-        return Decorated::UNDEFINED;
+        return Decorated::EMPTY;
     }
     let (lo, hi, known) = match verdict(a.interval, b.interval) {
         Verdict::Never => (0.0, 0.0, Decoration::Common),
@@ -130,7 +130,7 @@ pub(crate) fn equal(a: Decorated, b: Decorated) -> Decorated {
 pub(crate) fn select(a: Decorated, b: Decorated, c: Decorated) -> Decorated {
     let condition = a.interval;
     if condition.is_empty() {
-        return Decorated::UNDEFINED;
+        return Decorated::EMPTY;
     }
     let enclosure = if !condition.contains_zero() {
         b
