@@ -15,6 +15,8 @@ mod periodic;
 mod power;
 mod rounding;
 mod steps;
+#[cfg(test)]
+mod tests;
 
 pub use decoration::{Decorated, Decoration};
 pub use extension::Extension;

@@ -60,8 +60,9 @@ fn wave(interval: Interval, pieces: &Pieces, function: fn(f64) -> f64) -> Interv
         return FULL;
     };
     let (p, q) = (function(interval.lo), function(interval.hi));
+    // The sine of [0, 0] is [+0, −0]: of two zeros, each end has its own.
     let passes = |extreme_is_odd: bool| first != last && (last & 1 == 1) == extreme_is_odd;
-    let lo = if passes(true) { -1.0 } else { greater(-1.0, round_down(lesser(p, q))) };
+    let lo = if passes(true) { -1.0 } else { greater(-1.0, round_down(lesser(q, p))) };
     let hi = if passes(false) { 1.0 } else { lesser(1.0, round_up(greater(p, q))) };
     Interval { lo, hi }
 }
