@@ -54,6 +54,11 @@ impl Constant {
         self.enclosure.lo == self.value && self.enclosure.hi == self.value
     }
 
+    /// The constant with the other sign.
+    pub const fn negated(self) -> Self {
+        Self { value: -self.value, enclosure: Interval { lo: -self.enclosure.hi, hi: -self.enclosure.lo } }
+    }
+
     fn bits(self) -> [u64; 3] {
         [self.value.to_bits(), self.enclosure.lo.to_bits(), self.enclosure.hi.to_bits()]
     }

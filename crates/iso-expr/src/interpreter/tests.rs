@@ -1,33 +1,8 @@
 use super::Interpreter;
 use crate::engine::{Boxes, Enclosures, Points};
-use crate::operation::Value;
+use crate::program::reference::assert_same;
 use crate::random::Random;
-use crate::{Axis, Decoration, Engine, Interval, Node, Operation, Program, Scratch};
-
-/// The definition: every node in turn by the table's value.
-fn naive(program: &Program, point: [f64; 3]) -> Vec<f64> {
-    let mut values: Vec<f64> = Vec::new();
-    for node in program.nodes() {
-        values.push(match node {
-            Node::Variable(axis) => point[*axis as usize],
-            Node::Constant(constant) => constant.value(),
-            Node::Apply(operation, operands) => {
-                let [a, b, c] = operands.map(|operand| values[operand.index()]);
-                match operation.value() {
-                    Value::Unary(value) => value(a),
-                    Value::Binary(value) => value(a, b),
-                    Value::Ternary(value) => value(a, b, c),
-                }
-            }
-        });
-    }
-    program.outputs().iter().map(|output| values[output.index()]).collect()
-}
-
-fn assert_same(got: f64, expected: f64, context: impl Fn() -> String) {
-    let same = got.to_bits() == expected.to_bits() || (got.is_nan() && expected.is_nan());
-    assert!(same, "{got:?} instead of {expected:?}\n{}", context());
-}
+use crate::{Axis, Decoration, Engine, Interval, Operation, Program, Scratch};
 
 /// Every kernel over points gives what the definition gives, at `points` taken as one batch.
 fn check_points(program: &Program, scratch: &mut Scratch, points: &[[f64; 3]]) {
@@ -40,7 +15,7 @@ fn check_points(program: &Program, scratch: &mut Scratch, points: &[[f64; 3]]) {
     let mut point_values = vec![0.5; outputs];
     for (index, point) in points.iter().enumerate() {
         point_kernel.evaluate(scratch, point[0], point[1], point[2], &mut point_values);
-        for (output, expected) in naive(program, *point).into_iter().enumerate() {
+        for (output, expected) in program.evaluate(*point).into_iter().enumerate() {
             let context = || format!("output {output} at {point:?} of\n{program}");
             assert_same(point_values[output], expected, context);
             assert_same(batch_values[output * points.len() + index], expected, context);
@@ -125,7 +100,7 @@ fn enclosures_of_boxes_hold_the_values_at_points_inside() {
                     continue;
                 }
                 let point = arguments.map(|side| random.inside(side));
-                let value = naive(&program, point)[0];
+                let value = program.evaluate(point)[0];
                 assert!(
                     !value.is_finite() || (low[index] <= value && value <= high[index]),
                     "{value} at {point:?} is outside [{}, {}] over {arguments:?}\n{program}",

@@ -4,7 +4,7 @@
 //! a value between them; at a jump they give the derivative of the pieces.
 
 use super::Operation;
-use crate::{NodeId, Program};
+use crate::{Constant, Node, NodeId, Program};
 
 /// One application of an operation whose derivative is wanted.
 #[derive(Debug)]
@@ -48,7 +48,7 @@ impl Chain<'_> {
     fn times(&mut self, slope: impl FnOnce(&mut Self, NodeId) -> NodeId) -> Option<NodeId> {
         let derivative = self.derivatives[0]?;
         let slope = slope(self, self.operands[0]);
-        Some(self.apply(Operation::Multiply, &[slope, derivative]))
+        self.product(slope, Some(derivative))
     }
 
     /// a′ / divisor
@@ -86,8 +86,35 @@ impl Chain<'_> {
         }
     }
 
+    /// factor · derivative, with the constants multiplied first: no rounding is prescribed for a derivative, and so the
+    /// constants of a polynomial fold into one.
     fn product(&mut self, factor: NodeId, derivative: Option<NodeId>) -> Option<NodeId> {
-        derivative.map(|derivative| self.apply(Operation::Multiply, &[factor, derivative]))
+        let derivative = derivative?;
+        if self.program.node(derivative) == Node::Constant(Constant::exact(1.0)) {
+            return Some(factor);
+        }
+        let (constant, rest) = match self.program.node(derivative) {
+            Node::Constant(_) => (derivative, None),
+            Node::Apply(Operation::Multiply, [constant, rest, _]) if self.is_constant(constant) => {
+                (constant, Some(rest))
+            }
+            _ => return Some(self.apply(Operation::Multiply, &[factor, derivative])),
+        };
+        Some(match rest {
+            Some(rest) if self.is_constant(factor) => {
+                let constant = self.apply(Operation::Multiply, &[factor, constant]);
+                self.apply(Operation::Multiply, &[constant, rest])
+            }
+            Some(rest) => {
+                let variable = self.apply(Operation::Multiply, &[factor, rest]);
+                self.apply(Operation::Multiply, &[constant, variable])
+            }
+            None => self.apply(Operation::Multiply, &[constant, factor]),
+        })
+    }
+
+    fn is_constant(&self, id: NodeId) -> bool {
+        matches!(self.program.node(id), Node::Constant(_))
     }
 
     /// b where `condition` holds, else c, either of which may be zero.
@@ -153,24 +180,24 @@ pub(super) fn integer_power(chain: &mut Chain<'_>) -> Option<NodeId> {
         1 => a,
         lower => chain.program.integer_power(a, lower),
     };
-    let slope = chain.apply(Operation::Multiply, &[exponent, lower]);
-    Some(chain.apply(Operation::Multiply, &[slope, derivative]))
+    let rest = chain.product(lower, Some(derivative));
+    chain.product(exponent, rest)
 }
 
 /// b·aᵇ⁻¹·a′ + aᵇ·ln(a)·b′
 pub(super) fn power(chain: &mut Chain<'_>) -> Option<NodeId> {
     let ([a, b, _], [da, db, _]) = (chain.operands, chain.derivatives);
-    let of_base = da.map(|da| {
+    let of_base = da.and_then(|da| {
         let one = chain.literal(1.0);
         let lower = chain.apply(Operation::Subtract, &[b, one]);
         let power = chain.apply(Operation::Power, &[a, lower]);
-        let slope = chain.apply(Operation::Multiply, &[b, power]);
-        chain.apply(Operation::Multiply, &[slope, da])
+        let rest = chain.product(power, Some(da));
+        chain.product(b, rest)
     });
-    let of_exponent = db.map(|db| {
+    let of_exponent = db.and_then(|db| {
         let logarithm = chain.apply(Operation::Ln, &[a]);
         let slope = chain.apply(Operation::Multiply, &[chain.result, logarithm]);
-        chain.apply(Operation::Multiply, &[slope, db])
+        chain.product(slope, Some(db))
     });
     chain.sum(of_base, of_exponent)
 }
@@ -333,10 +360,10 @@ pub(super) use sign as equal;
 /// a′ − ⌊a/b⌋·b′
 pub(super) fn modulo(chain: &mut Chain<'_>) -> Option<NodeId> {
     let ([a, b, _], [da, db, _]) = (chain.operands, chain.derivatives);
-    let of_b = db.map(|db| {
+    let of_b = db.and_then(|db| {
         let quotient = chain.apply(Operation::Divide, &[a, b]);
         let turns = chain.apply(Operation::Floor, &[quotient]);
-        chain.apply(Operation::Multiply, &[turns, db])
+        chain.product(turns, Some(db))
     });
     chain.difference(da, of_b)
 }

@@ -4,6 +4,9 @@ mod display;
 mod gradient;
 mod powers;
 mod rebuild;
+#[cfg(test)]
+pub(crate) mod reference;
+mod simplify;
 
 use std::collections::HashMap;
 

@@ -46,3 +46,17 @@ fn an_integer_power_has_an_integer_exponent() {
     let x = program.variable(Axis::X);
     program.apply(Operation::IntegerPower, &[x, x]);
 }
+
+#[test]
+fn the_gradient_of_a_polynomial_is_minimal() {
+    let mut program = Program::new();
+    let (x, y) = (program.variable(Axis::X), program.variable(Axis::Y));
+    let (fourth, square, five) =
+        (program.integer_power(x, 4), program.integer_power(y, 3), program.literal(5.0));
+    let scaled = program.apply(Operation::Multiply, &[five, square]);
+    let difference = program.apply(Operation::Subtract, &[fourth, scaled]);
+    program.set_outputs(vec![difference]);
+    let expected = "v2 = x ^ 4\nv4 = x ^ 3\nv5 = 4 * v4\nv8 = y ^ 3\nv9 = y ^ 2\nv11 = 5 * v8\nv13 = -15 * v9\n\
+                    v14 = v2 - v11\nF = v14\n∂F/∂x = v5\n∂F/∂y = v13\n∂F/∂z = 0\n";
+    assert_eq!(program.with_gradient().simplified().to_string(), expected);
+}

@@ -1,0 +1,33 @@
+//! The definition of a program's value, for tests to hold engines and passes to.
+
+use super::{Node, Program};
+use crate::Value;
+
+impl Program {
+    /// The outputs at `point`, every node in turn by the table's value.
+    pub(crate) fn evaluate(&self, point: [f64; 3]) -> Vec<f64> {
+        let mut values: Vec<f64> = Vec::with_capacity(self.nodes.len());
+        for node in &self.nodes {
+            values.push(match node {
+                Node::Variable(axis) => point[*axis as usize],
+                Node::Constant(constant) => constant.value(),
+                Node::Apply(operation, operands) => {
+                    let [a, b, c] = operands.map(|operand| values[operand.index()]);
+                    match operation.value() {
+                        Value::Unary(value) => value(a),
+                        Value::Binary(value) => value(a, b),
+                        Value::Ternary(value) => value(a, b, c),
+                    }
+                }
+            });
+        }
+        self.outputs.iter().map(|output| values[output.index()]).collect()
+    }
+}
+
+/// Panics unless both are NaN or have the same bits.
+#[track_caller]
+pub(crate) fn assert_same(given: f64, expected: f64, context: impl Fn() -> String) {
+    let same = given.to_bits() == expected.to_bits() || (given.is_nan() && expected.is_nan());
+    assert!(same, "{given:?} instead of {expected:?}\n{}", context());
+}
