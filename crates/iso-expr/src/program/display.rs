@@ -2,33 +2,53 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::{Node, NodeId, Program};
+use super::{Axis, Node, NodeId, Program};
 use crate::{Constant, Operation};
 
 /// Lists the operations in order, `v7 = v3 * x`, then what each output is. Variables and constants stand where they are
 /// used. A constant that no double equals is printed as the double that stands for it, after `≈`.
 impl Display for Program {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let listing = Listing::new(self);
         for (id, node) in self.iter() {
             if let Node::Apply(operation, _) = node {
-                write!(f, "v{} = ", id.index())?;
-                self.write_application(f, *operation, node.operands())?;
+                write!(f, "{} = ", listing.operand(id))?;
+                listing.write_application(f, *operation, node.operands())?;
                 writeln!(f)?;
             }
         }
         for (place, output) in self.outputs.iter().enumerate() {
             match (self.outputs.len(), place) {
                 (1, _) | (4, 0) => write!(f, "F")?,
-                (4, _) => write!(f, "∂F/∂{}", super::Axis::ALL[place - 1].name())?,
+                (4, _) => write!(f, "∂F/∂{}", Axis::ALL[place - 1].name())?,
                 _ => write!(f, "output {}", place + 1)?,
             }
-            writeln!(f, " = {}", Operand(self, *output))?;
+            writeln!(f, " = {}", listing.operand(*output))?;
         }
         Ok(())
     }
 }
 
-impl Program {
+/// A program whose operations are numbered from 1.
+struct Listing<'a> {
+    program: &'a Program,
+    /// For each node how many operations stand up to it.
+    numbers: Vec<usize>,
+}
+
+impl<'a> Listing<'a> {
+    fn new(program: &'a Program) -> Self {
+        let count = |operations: &mut usize, node: &Node| {
+            *operations += usize::from(matches!(node, Node::Apply(..)));
+            Some(*operations)
+        };
+        Self { program, numbers: program.nodes.iter().scan(0, count).collect() }
+    }
+
+    fn operand(&self, id: NodeId) -> Operand {
+        Operand { node: self.program.node(id), number: self.numbers[id.index()] }
+    }
+
     fn write_application(
         &self,
         f: &mut Formatter<'_>,
@@ -38,13 +58,13 @@ impl Program {
         let name = operation.name();
         let is_sign = !name.starts_with(|first: char| first.is_alphabetic());
         match operands {
-            [a] if operation == Operation::Negate => write!(f, "-{}", Operand(self, *a)),
-            [a, b] if is_sign => write!(f, "{} {name} {}", Operand(self, *a), Operand(self, *b)),
+            [a] if operation == Operation::Negate => write!(f, "-{}", self.operand(*a)),
+            [a, b] if is_sign => write!(f, "{} {name} {}", self.operand(*a), self.operand(*b)),
             _ => {
                 write!(f, "{name}(")?;
                 for (place, operand) in operands.iter().enumerate() {
                     let separator = if place == 0 { "" } else { ", " };
-                    write!(f, "{separator}{}", Operand(self, *operand))?;
+                    write!(f, "{separator}{}", self.operand(*operand))?;
                 }
                 write!(f, ")")
             }
@@ -53,14 +73,18 @@ impl Program {
 }
 
 /// A node where another one uses it.
-struct Operand<'a>(&'a Program, NodeId);
+struct Operand {
+    node: Node,
+    /// Of the operation, if it is one.
+    number: usize,
+}
 
-impl Display for Operand<'_> {
+impl Display for Operand {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match self.0.node(self.1) {
+        match self.node {
             Node::Variable(axis) => write!(f, "{}", axis.name()),
             Node::Constant(constant) => write_constant(f, constant),
-            Node::Apply(..) => write!(f, "v{}", self.1.index()),
+            Node::Apply(..) => write!(f, "v{}", self.number),
         }
     }
 }

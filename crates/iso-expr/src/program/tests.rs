@@ -25,7 +25,7 @@ fn substitution_leaves_no_node_that_nothing_needs() {
         let x = program.apply(Operation::Add, &[t, three]);
         [x, t, z]
     });
-    assert_eq!(on_a_line.to_string(), "v2 = x + 3\nv3 = v2 ^ 3\nv4 = v3 * x\nF = v4\n");
+    assert_eq!(on_a_line.to_string(), "v1 = x + 3\nv2 = v1 ^ 3\nv3 = v2 * x\nF = v3\n");
 }
 
 #[test]
@@ -56,7 +56,7 @@ fn the_gradient_of_a_polynomial_is_minimal() {
     let scaled = program.apply(Operation::Multiply, &[five, square]);
     let difference = program.apply(Operation::Subtract, &[fourth, scaled]);
     program.set_outputs(vec![difference]);
-    let expected = "v2 = x ^ 4\nv4 = x ^ 3\nv5 = 4 * v4\nv8 = y ^ 3\nv9 = y ^ 2\nv11 = 5 * v8\nv13 = -15 * v9\n\
-                    v14 = v2 - v11\nF = v14\n∂F/∂x = v5\n∂F/∂y = v13\n∂F/∂z = 0\n";
+    let expected = "v1 = x ^ 4\nv2 = x ^ 3\nv3 = 4 * v2\nv4 = y ^ 3\nv5 = y ^ 2\nv6 = 5 * v4\nv7 = v1 - v6\n\
+                    v8 = -15 * v5\nF = v7\n∂F/∂x = v3\n∂F/∂y = v8\n∂F/∂z = 0\n";
     assert_eq!(program.with_gradient().simplified().to_string(), expected);
 }

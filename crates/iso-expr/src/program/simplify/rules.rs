@@ -180,7 +180,7 @@ impl Simplifier<'_> {
     /// Whether the node is neither a negative number nor −0, wherever it is defined.
     fn is_never_negative(&self, id: NodeId) -> bool {
         match self.program.node(id) {
-            Node::Apply(Operation::IntegerPower, _) => self.base_and_exponent(id).1 % 2 == 0,
+            Node::Apply(Operation::IntegerPower, _) => self.base_and_exponent(id).1.is_multiple_of(2),
             Node::Apply(Operation::Absolute | Operation::Exp | Operation::Exp2 | Operation::Cosh, _) => true,
             _ => false,
         }
