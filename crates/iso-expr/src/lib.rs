@@ -11,6 +11,7 @@ pub mod engine;
 mod interpreter;
 pub mod interval;
 mod operation;
+mod pieces;
 pub mod program;
 #[cfg(any(test, feature = "random"))]
 pub mod random;
@@ -20,4 +21,5 @@ pub use engine::{BatchKernel, BoxKernel, CompileError, Engine, PointKernel, Scra
 pub use interpreter::Interpreter;
 pub use interval::{Decorated, Decoration, Extension, Interval};
 pub use operation::{Chain, Operation, Value};
+pub use pieces::Pieces;
 pub use program::{Axis, Node, NodeId, Program};

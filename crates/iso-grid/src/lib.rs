@@ -5,6 +5,7 @@
 //! for every [`Ray`] how its search for the first root inside the [`Region`] ended, an [`Outcome`].
 
 mod batch;
+mod certified;
 #[cfg(test)]
 mod closed_forms;
 mod counters;
@@ -27,6 +28,7 @@ mod testing;
 mod tracer;
 mod walk;
 
+pub use certified::Certified;
 pub use counters::Counters;
 pub use direct::Direct;
 pub use error::GridError;

@@ -33,6 +33,11 @@ impl Surface {
         }
     }
 
+    /// The program of F − C.
+    pub fn program(&self) -> &Program {
+        &self.value
+    }
+
     /// F − C at points.
     ///
     /// # Errors

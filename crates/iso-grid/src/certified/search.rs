@@ -1,0 +1,162 @@
+//! The search for the first root along a ray, front to back.
+
+use iso_expr::interval::{round_down, round_up};
+use iso_expr::{Decoration, Program};
+
+use super::classify::{Finding, classify, free_of_zero};
+use super::clip::Clip;
+use super::line::Line;
+use crate::{Hit, Outcome, Span};
+
+/// Into how many parts an open stretch is cut.
+const PARTS: usize = 4;
+
+/// Where a stretch is cut, as fractions of its length: off the symmetric places where roots are fond of lying, for a root
+/// at a cut leaves both neighbours open.
+const CUTS: [f64; PARTS - 1] = [0.2402, 0.4883, 0.7539];
+
+/// How many boxes may be enclosed along one ray before the search gives up.
+const WORK_LIMIT: u64 = 1 << 14;
+
+/// How many pieces of F around its poles and jumps are looked at before the search goes on without them.
+const PIECES: usize = 32;
+
+/// How often an interval that cannot be split is widened to see whether a simple root hides in the rounding.
+const WIDENINGS: u32 = 8;
+
+/// The search along one ray.
+pub(super) struct Search<'a> {
+    pub(super) line: Line<'a>,
+    pub(super) program: &'a Program,
+    pub(super) accuracy: f64,
+    pub(super) clip: Clip,
+    /// What lies ahead, the nearest on top. Everything before it is free of roots, and so is all between.
+    pub(super) ahead: &'a mut Vec<Ahead>,
+}
+
+/// A stretch that may hold roots.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ahead {
+    stretch: Span,
+    finding: Finding,
+}
+
+impl Search<'_> {
+    /// How the search ends. Everything before the end is proven.
+    pub(super) fn run(&mut self) -> Outcome {
+        self.ahead.clear();
+        self.ahead.push(Ahead { stretch: self.clip.outer, finding: Finding::Open });
+        while let Some(Ahead { stretch, finding }) = self.ahead.pop() {
+            if self.line.evaluations >= WORK_LIMIT {
+                return Outcome::Undecided(Span { start: stretch.start, end: self.clip.outer.end });
+            }
+            let end = match finding {
+                Finding::Open if stretch.end - stretch.start > self.resolution(stretch) => {
+                    self.divide(stretch);
+                    None
+                }
+                Finding::Open | Finding::Flat => self.settle(stretch),
+                Finding::Crossing => self.place(stretch),
+                Finding::Plateau => Some(Outcome::Touch(Hit { t: stretch.start, bracket: stretch })),
+            };
+            if let Some(outcome) = end {
+                return outcome;
+            }
+        }
+        Outcome::Miss
+    }
+
+    /// How wide the enclosure of a root in `stretch` may be: never wider than the ray's scale allows.
+    fn tolerance(&self, stretch: Span) -> f64 {
+        let scale = self.clip.outer.end;
+        self.accuracy * stretch.start.max(1.0).min(scale)
+    }
+
+    /// How wide a stretch must be to be worth splitting: a few neighbouring doubles, or well below the tolerance.
+    fn resolution(&self, stretch: Span) -> f64 {
+        let neighbours = 4.0 * f64::EPSILON * self.clip.outer.end;
+        neighbours.max(self.tolerance(stretch) / 1024.0)
+    }
+
+    /// Cuts a stretch, and puts the parts that may hold roots in its place.
+    fn divide(&mut self, stretch: Span) {
+        let length = stretch.end - stretch.start;
+        let mut ends = [stretch.start; PARTS + 1];
+        for (cut, fraction) in CUTS.iter().enumerate() {
+            ends[cut + 1] = stretch.start + fraction * length;
+        }
+        ends[PARTS] = stretch.end;
+        let parts: [Span; PARTS] =
+            std::array::from_fn(|part| Span { start: ends[part], end: ends[part + 1] });
+
+        let values = self.line.values(&parts);
+        let open = |part: &usize| !free_of_zero(values[*part].interval);
+        let (Some(first), Some(last)) = ((0..PARTS).find(open), (0..PARTS).rev().find(open)) else { return };
+        let courses = self.line.courses(&parts[first..=last]);
+        let points: [Span; PARTS + 1] = ends.map(|t| Span { start: t, end: t });
+        let at_ends = self.line.values(&points[first..=last + 1]);
+
+        for part in (first..=last).rev().filter(open) {
+            let place = part - first;
+            let (start, end) = (at_ends[place].interval, at_ends[place + 1].interval);
+            let Some((stretch, finding)) = classify(parts[part], courses[place], start, end) else {
+                continue;
+            };
+            let continuous = courses[place].value.decoration >= Decoration::Continuous;
+            if continuous || !self.pieces_are_free(stretch) {
+                self.ahead.push(Ahead { stretch, finding });
+            }
+        }
+    }
+
+    /// Ends the search at a stretch that cannot be split further, or finds that it holds no root after all.
+    fn settle(&mut self, stretch: Span) -> Option<Outcome> {
+        let value = self.line.course(stretch).value;
+        if value.decoration < Decoration::Continuous {
+            return (!self.pieces_are_free(stretch)).then_some(Outcome::Undecided(stretch));
+        }
+        let mut margin = (stretch.end - stretch.start).max(self.resolution(stretch));
+        for _ in 0..WIDENINGS {
+            let wide =
+                Span { start: round_down(stretch.start - margin), end: round_up(stretch.end + margin) };
+            let course = self.line.course(wide);
+            let ends = [wide.start, wide.end].map(|t| self.line.value_at(t));
+            match classify(wide, course, ends[0], ends[1]) {
+                None => return None,
+                Some((narrowed, Finding::Crossing)) => return self.place(narrowed),
+                Some(_) => margin *= 2.0,
+            }
+        }
+        let middle = stretch.start + 0.5 * (stretch.end - stretch.start);
+        Some(if value.interval.is_bounded() {
+            Outcome::Touch(Hit { t: middle, bracket: stretch })
+        } else {
+            Outcome::Undecided(stretch)
+        })
+    }
+
+    /// Ends the search at the one simple root of a stretch, unless it lies outside the region.
+    fn place(&mut self, stretch: Span) -> Option<Outcome> {
+        let bracket = self.line.enclose_root(stretch, self.tolerance(stretch));
+        let Clip { outer, inner } = self.clip;
+        if bracket.end < outer.start || bracket.start > outer.end {
+            return None;
+        }
+        if bracket.start < inner.start || bracket.end > inner.end {
+            return Some(Outcome::Undecided(bracket));
+        }
+        let t = bracket.start + 0.5 * (bracket.end - bracket.start);
+        Some(Outcome::Hit(Hit { t, bracket }))
+    }
+
+    /// Whether F is never zero on a stretch, seen piece by piece.
+    fn pieces_are_free(&mut self, stretch: Span) -> bool {
+        for (place, piece) in self.program.pieces(self.line.bounds(stretch)).enumerate() {
+            self.line.evaluations += 1;
+            if place == PIECES || !free_of_zero(piece) {
+                return false;
+            }
+        }
+        true
+    }
+}
