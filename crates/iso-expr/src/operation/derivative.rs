@@ -372,3 +372,6 @@ pub(super) fn select(chain: &mut Chain<'_>) -> Option<NodeId> {
     let [_, db, dc] = chain.derivatives;
     chain.choice(chain.operands[0], db, dc)
 }
+
+#[cfg(test)]
+mod tests;

@@ -74,7 +74,7 @@ pub enum Operation {
     Acos,
     /// arctan a
     Atan,
-    /// The angle of the point (b, a), from −π to π
+    /// The angle of the point (b, a), above −π and up to π; at the origin, where it is undefined, its double is 0
     Atan2,
     /// sinh a
     Sinh,

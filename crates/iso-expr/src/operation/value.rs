@@ -46,7 +46,8 @@ values! {
     asin(a) = core_math::asin(a);
     acos(a) = core_math::acos(a);
     atan(a) = core_math::atan(a);
-    atan2(a, b) = core_math::atan2(a, b);
+    // The C function tells −0 from 0 to know on which side of a cut it is; a real zero is on neither.
+    atan2(a, b) = core_math::atan2(a + 0.0, b + 0.0);
     sinh(a) = core_math::sinh(a);
     cosh(a) = core_math::cosh(a);
     tanh(a) = core_math::tanh(a);

@@ -4,8 +4,14 @@ use super::{Node, Program};
 use crate::Value;
 
 impl Program {
-    /// The outputs at `point`, every node in turn by the table's value.
+    /// The outputs at `point`.
     pub(crate) fn evaluate(&self, point: [f64; 3]) -> Vec<f64> {
+        let values = self.evaluate_nodes(point);
+        self.outputs.iter().map(|output| values[output.index()]).collect()
+    }
+
+    /// Every node at `point`, in turn by the table's value.
+    pub(crate) fn evaluate_nodes(&self, point: [f64; 3]) -> Vec<f64> {
         let mut values: Vec<f64> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
             values.push(match node {
@@ -21,7 +27,7 @@ impl Program {
                 }
             });
         }
-        self.outputs.iter().map(|output| values[output.index()]).collect()
+        values
     }
 }
 
