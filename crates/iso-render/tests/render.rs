@@ -1,0 +1,93 @@
+//! Pictures of a sphere, of which everything is known in closed form.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use iso_expr::{Axis, Interpreter, NodeId, Operation, Program};
+use iso_grid::{Certified, Region, Surface};
+use iso_render::{Camera, Layers, Picture, Projection, Scene, Shading, Size, Status, View, render};
+
+const ALL: Layers = Layers { color: true, depth: true, normals: true, points: true, statuses: true };
+
+/// x² + y² + z² − 1
+fn sphere() -> Program {
+    let mut program = Program::new();
+    let squares: Vec<NodeId> = Axis::ALL
+        .into_iter()
+        .map(|axis| {
+            let variable = program.variable(axis);
+            program.integer_power(variable, 2)
+        })
+        .collect();
+    let one = program.literal(1.0);
+    let sum =
+        squares.into_iter().reduce(|sum, square| program.apply(Operation::Add, &[sum, square])).unwrap();
+    let value = program.apply(Operation::Subtract, &[sum, one]);
+    program.set_outputs(vec![value]);
+    program
+}
+
+/// The sphere from the front, two pixels to a tenth of its radius.
+fn picture(size: Size, threads: usize) -> Picture {
+    let program = sphere();
+    let gradient = program.with_gradient();
+    let surface = Surface::new(Arc::new(Interpreter::default()), program, gradient);
+    let region = Region::new(DVec3::splat(-1.5), DVec3::splat(1.5)).unwrap();
+    let tracer = Certified::new(&surface, region).unwrap();
+    let view = View::Orbit { yaw: 0.0, pitch: 0.0, distance: Some(5.0) };
+    let projection = Projection::Orthographic { view_width: Some(0.05 * f64::from(size.width())) };
+    let camera = Camera::new(view, projection, &region, size).unwrap();
+    let shading = Shading::new(&camera, false);
+    let scene = Scene { surface: &surface, tracer: &tracer, camera: &camera, shading: &shading };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| render(&scene, size, ALL, &|_, _| {})).unwrap()
+}
+
+#[test]
+fn depths_normals_points_and_statuses_are_those_of_the_sphere() {
+    let size = Size::new(70, 50).unwrap();
+    let picture = picture(size, 2);
+    let mut hits = 0;
+    for row in 0..size.height() {
+        for column in 0..size.width() {
+            let pixel = size.offset(column, row);
+            let (x, z) = (0.05 * (f64::from(column) - 34.5), -0.05 * (f64::from(row) - 24.5));
+            let height_squared = 1.0 - x * x - z * z;
+            if height_squared < 0.0 {
+                assert_eq!(picture.statuses[pixel], Status::Miss);
+                assert!(picture.depth[pixel].is_nan() && picture.normals[pixel].is_nan());
+                continue;
+            }
+            hits += 1;
+            let point = DVec3::new(x, -height_squared.sqrt(), z);
+            assert_eq!(picture.statuses[pixel], Status::Hit);
+            assert!((picture.depth[pixel] - (5.0 + point.y)).abs() < 1e-11);
+            assert!(picture.points[pixel].distance(point) < 1e-11);
+            assert!(picture.normals[pixel].distance(point) < 1e-11);
+        }
+    }
+    assert!(hits > 1000);
+    assert_eq!((picture.counts.hit, picture.counts.miss), (hits, 3500 - hits));
+    assert_eq!(picture.counters.rays, 3500);
+}
+
+#[test]
+fn the_number_of_threads_changes_no_bit() {
+    let size = Size::new(67, 45).unwrap();
+    let (one, three) = (picture(size, 1), picture(size, 3));
+    assert_eq!(one.color, three.color);
+    assert_eq!(
+        one.depth.iter().map(|t| t.to_bits()).collect::<Vec<_>>(),
+        three.depth.iter().map(|t| t.to_bits()).collect::<Vec<_>>()
+    );
+    assert_eq!(one.counters, three.counters);
+}
+
+/// The picture is the right way up: the key light comes from the upper left.
+#[test]
+fn the_upper_left_of_a_sphere_is_brighter_than_the_lower_right() {
+    let size = Size::new(60, 60).unwrap();
+    let picture = picture(size, 1);
+    let brightness = |column, row| picture.color[size.offset(column, row)].map(u32::from).iter().sum::<u32>();
+    assert!(brightness(22, 22) > brightness(37, 37) + 100);
+}
