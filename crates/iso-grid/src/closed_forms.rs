@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use crate::testing::{surface, surface_without_gradient, trace};
-use crate::{Direct, Grid, GridSettings, Hit, Outcome, Ray, Region, Surface, Tracer, Workspace, normals};
+use crate::{
+    Direct, Grid, GridSettings, Hit, Octree, Outcome, Ray, Region, Surface, Tracer, Workspace, normals,
+};
 
 fn cube(half_side: f64) -> Region {
     Region::new(DVec3::splat(-half_side), DVec3::splat(half_side)).unwrap()
@@ -15,6 +17,7 @@ fn methods(surface: &Surface, region: Region, cells: u32) -> Vec<Box<dyn Tracer>
     vec![
         Box::new(Direct::new(surface, region, settings.step).unwrap()),
         Box::new(Grid::new(surface, region, &settings).unwrap()),
+        Box::new(Octree::new(surface, region, &settings).unwrap()),
     ]
 }
 

@@ -7,21 +7,27 @@ use thiserror::Error;
 #[derive(Clone, Debug, Error)]
 #[non_exhaustive]
 pub enum GridError {
-    /// A grid without cells.
-    #[error("the grid has 0 cells along {axis}; it needs at least 1 (the method without a grid is `direct`)")]
-    NoCells {
+    /// No cells along an axis, or too many.
+    #[error(
+        "the grid has {given} cells along {axis}; it takes 1 to {allowed}, and none at all only with the method direct"
+    )]
+    Cells {
         /// The axis's name.
         axis: char,
-    },
-    /// More cells than memory is given to.
-    #[error("the {method} asks for {given} cells; at most {allowed} are allowed")]
-    TooManyCells {
-        /// What holds the cells.
-        method: &'static str,
         /// The cells asked for.
-        given: u128,
+        given: u32,
         /// The most that are allowed.
-        allowed: u128,
+        allowed: u32,
+    },
+    /// More cells in all than memory is given to.
+    #[error("the {method} comes to {given} cells; at most {allowed} are allowed")]
+    TooManyCells {
+        /// The method's name.
+        method: &'static str,
+        /// The cells that it comes to.
+        given: u64,
+        /// The most that are allowed.
+        allowed: u64,
     },
     /// A cell is cut into no parts or into too many when it is examined again.
     #[error("cells examined again are cut into {given} parts along {axis}; it takes 1 to {allowed}")]

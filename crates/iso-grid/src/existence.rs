@@ -203,3 +203,151 @@ impl Examination<'_> {
         }))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicU64, Ordering};
+
+    use super::*;
+    use crate::testing::{Function, surface_without_gradient, trace};
+    use crate::{Grid, GridSettings, Outcome, Ray, Region, Tracer};
+
+    /// A ball, and a rod from it that is thinner than a cell of five and passes between their corners.
+    fn ball_and_rod(p: DVec3) -> f64 {
+        let ball = (p + DVec3::new(0.8, 0.0, 0.0)).length_squared() - 0.35 * 0.35;
+        let rod = p.y * p.y + p.z * p.z - 0.1 * 0.1;
+        ball.min(rod)
+    }
+
+    /// Waves with holes where they are undefined.
+    fn waves(p: DVec3) -> f64 {
+        if (5.0 * p.y).sin() * p.x > 0.7 {
+            f64::NAN
+        } else {
+            (11.0 * p.x).sin() + (9.0 * p.y).sin() * (7.0 * p.z).cos()
+        }
+    }
+
+    fn cube() -> Region {
+        Region::new(DVec3::splat(-1.0), DVec3::splat(1.0)).unwrap()
+    }
+
+    fn grid(function: Function, settings: &GridSettings) -> Grid {
+        Grid::new(&surface_without_gradient(function), cube(), settings).unwrap()
+    }
+
+    #[test]
+    fn what_the_corners_miss_is_found_from_its_neighbours() {
+        let across_the_rod = Ray { origin: DVec3::new(0.9, 3.0, 0.0), direction: DVec3::NEG_Y };
+        let settings = GridSettings::new([5; 3]);
+        assert_eq!(settings.refinement, [3; 3]);
+        let looked_again = grid(ball_and_rod, &settings);
+        assert!(
+            matches!(trace(&looked_again, across_the_rod), Outcome::Hit(hit) if (hit.t - 2.9).abs() < 1e-15)
+        );
+        // One after the other, the three cells between the ball and the far end of the rod.
+        assert_eq!(looked_again.preprocessing().rescued_cells, 3);
+
+        let looked_once = grid(ball_and_rod, &GridSettings { refinement: [1; 3], ..settings });
+        assert_eq!(trace(&looked_once, across_the_rod), Outcome::Miss);
+        let counters = looked_once.preprocessing();
+        assert_eq!((counters.rescued_cells, counters.preprocess_evaluations), (0, 6 * 6 * 6));
+    }
+
+    /// The paper's rule word for word, one cell after the other, until nothing changes.
+    fn by_the_rule(function: Function, settings: &GridSettings) -> (Vec<bool>, u64, u64) {
+        let lattice = Lattice::new(&cube(), settings.cells);
+        let counts = lattice.cells();
+        let number_of_cells: usize = counts.iter().product();
+        let differ = |cell: usize, parts: [u32; 3]| {
+            let place = lattice::place(cell, counts);
+            let (near, far) = (lattice.point(place), lattice.point(place.map(|place| place + 1)));
+            let mut signs = Signs::NONE;
+            for number in 0..(parts[0] + 1) * (parts[1] + 1) * (parts[2] + 1) {
+                let place = lattice::place(number as usize, parts.map(|parts| parts as usize + 1));
+                let part = |axis: usize| match place[axis] as u32 {
+                    end if end == parts[axis] => far[axis],
+                    inner => {
+                        near[axis] + (far[axis] - near[axis]) * (f64::from(inner) / f64::from(parts[axis]))
+                    }
+                };
+                signs = signs | Signs::of(function(DVec3::new(part(0), part(1), part(2))));
+            }
+            signs.differ()
+        };
+        let mut holds: Vec<bool> = (0..number_of_cells).map(|cell| differ(cell, [1; 3])).collect();
+        let mut examined = vec![false; number_of_cells];
+        let mut rescued = 0;
+        loop {
+            let next = (0..number_of_cells).find(|&cell| {
+                let place = lattice::place(cell, counts);
+                let mut neighbours = lattice::neighbours(place, counts);
+                !holds[cell]
+                    && !examined[cell]
+                    && neighbours.any(|other| holds[lattice::index(other, counts)])
+            });
+            let Some(cell) = next else { break };
+            examined[cell] = true;
+            if differ(cell, settings.refinement) {
+                holds[cell] = true;
+                rescued += 1;
+            }
+        }
+        (holds, examined.into_iter().filter(|&examined| examined).count() as u64, rescued)
+    }
+
+    #[test]
+    fn cells_are_those_of_the_rule_and_each_is_examined_once() {
+        let mut rescued_in_all = 0;
+        let cases = [(waves as Function, [9, 12, 4]), (waves, [6, 22, 7]), (ball_and_rod, [5, 5, 11])];
+        for (function, cells) in cases {
+            let settings = GridSettings::new(cells);
+            let grid = grid(function, &settings);
+            let (holds, examined, rescued) = by_the_rule(function, &settings);
+            let lattice = Lattice::new(&cube(), cells);
+            let kernel = surface_without_gradient(function);
+            let mut counters = Counters::default();
+            let found =
+                Cells::find(&**kernel.values().unwrap(), &lattice, settings.refinement, &mut counters);
+            for (cell, &holds) in holds.iter().enumerate() {
+                assert_eq!(found.holds_surface(lattice::place(cell, lattice.cells())), holds, "cell {cell}");
+            }
+            assert_eq!(counters, grid.preprocessing());
+            assert_eq!((counters.examined_cells, counters.rescued_cells), (examined, rescued));
+            assert_eq!(counters.existence_cells, holds.iter().filter(|&&holds| holds).count() as u64);
+            assert!(examined > 0, "nothing to examine in {cells:?}");
+            rescued_in_all += rescued;
+        }
+        assert!(rescued_in_all > 10, "{rescued_in_all} cells rescued");
+    }
+
+    #[test]
+    fn evaluations_are_counted() {
+        static EVALUATIONS: AtomicU64 = AtomicU64::new(0);
+        let surface = surface_without_gradient(|p| {
+            EVALUATIONS.fetch_add(1, Ordering::Relaxed);
+            ball_and_rod(p)
+        });
+        let settings = GridSettings::new([5; 3]);
+        let grid = Grid::new(&surface, cube(), &settings).unwrap();
+        let counters = grid.preprocessing();
+        assert_eq!(counters.preprocess_evaluations, EVALUATIONS.swap(0, Ordering::Relaxed));
+        // All grid points, and not all 4·4·4 − 8 further corners of each cell that was examined.
+        let most = 6 * 6 * 6 + 56 * counters.examined_cells;
+        assert!(counters.preprocess_evaluations > 6 * 6 * 6 && counters.preprocess_evaluations < most);
+    }
+
+    #[test]
+    fn constants_and_undefined_functions_have_no_cells_but_zero_has_all() {
+        for (function, existence) in [
+            ((|_| 1.0) as Function, 0),
+            (|_| -1.0, 0),
+            (|_| f64::NAN, 0),
+            (|_| f64::NEG_INFINITY, 0),
+            (|p| if p.x < 0.1 { f64::INFINITY } else { -1.0 }, 0),
+            (|_| -0.0, 125),
+        ] {
+            assert_eq!(grid(function, &GridSettings::new([5; 3])).preprocessing().existence_cells, existence);
+        }
+    }
+}

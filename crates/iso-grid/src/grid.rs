@@ -36,8 +36,8 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// The most cells, all axes together; each takes two bytes.
-    pub const MOST_CELLS: u128 = 1 << 28;
+    /// The most cells in all; each takes a byte, and so does each grid point while they are found.
+    pub const MOST_CELLS: u64 = 1 << 28;
 
     /// Prepares the method: evaluates F − C at the grid's points, over all threads, and finds the existence cells.
     ///

@@ -5,7 +5,7 @@ use crate::GridError;
 /// How the paper's methods cut the region and sample rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridSettings {
-    /// Ni, Nj, Nk: the cells along x, y and z, each at least 1.
+    /// Ni, Nj, Nk: the cells along x, y and z, each 1 to [`GridSettings::MOST_CELLS`].
     pub cells: [u32; 3],
     /// Mi, Mj, Mk: the parts into which a cell is cut along x, y and z when it is examined again, 1 to
     /// [`GridSettings::LARGEST_REFINEMENT`]. One part along each axis has no new corners: nothing is found again.
@@ -20,6 +20,8 @@ impl GridSettings {
     pub const STEP: f64 = 0.05;
     /// The least distance between samples, below which a ray would take hours.
     pub const LEAST_STEP: f64 = 1e-6;
+    /// The most cells along an axis.
+    pub const MOST_CELLS: u32 = 1 << 16;
     /// The most parts along an axis into which a cell is cut when it is examined again.
     pub const LARGEST_REFINEMENT: u32 = 64;
 
@@ -34,8 +36,8 @@ impl GridSettings {
         for (axis, (&cells, &parts)) in
             ['x', 'y', 'z'].into_iter().zip(self.cells.iter().zip(&self.refinement))
         {
-            if cells == 0 {
-                return Err(GridError::NoCells { axis });
+            if !(1..=Self::MOST_CELLS).contains(&cells) {
+                return Err(GridError::Cells { axis, given: cells, allowed: Self::MOST_CELLS });
             }
             if !(1..=Self::LARGEST_REFINEMENT).contains(&parts) {
                 return Err(GridError::Refinement { axis, given: parts, allowed: Self::LARGEST_REFINEMENT });
@@ -45,8 +47,8 @@ impl GridSettings {
     }
 
     /// How many cells the grid has.
-    pub(crate) fn count(&self) -> u128 {
-        self.cells.iter().map(|&cells| u128::from(cells)).product()
+    pub(crate) fn count(&self) -> u64 {
+        self.cells.iter().map(|&cells| u64::from(cells)).product()
     }
 }
 

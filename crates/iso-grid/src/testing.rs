@@ -1,10 +1,12 @@
-//! Surfaces for tests, given by functions of Rust.
+//! What tests share: surfaces given by functions of Rust, and rays of every kind.
 
 use std::sync::Arc;
 
 use glam::DVec3;
 use iso_expr::engine::Points;
 use iso_expr::{BatchKernel, BoxKernel, CompileError, Engine, PointKernel, Program, Scratch};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 use crate::{Outcome, Ray, Surface, Tracer, Workspace};
 
@@ -73,4 +75,34 @@ pub(crate) fn trace(tracer: &dyn Tracer, ray: Ray) -> Outcome {
     let mut outcomes = [Outcome::Miss];
     tracer.trace(&mut Workspace::default(), &[ray], &mut outcomes);
     outcomes[0]
+}
+
+/// Property tests of this many cases, the same at every run.
+pub(crate) fn property(cases: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(1),
+        ..ProptestConfig::default()
+    }
+}
+
+/// Rays around a box of side 2 or so: from planes between cells, from cells and from outside; along axes, slanted and
+/// backwards, of very small and very large components.
+pub(crate) fn ray() -> impl Strategy<Value = Ray> {
+    let coordinate = prop_oneof![(-12..=12).prop_map(|quarter| f64::from(quarter) / 4.0), -3.0..3.0];
+    let component = prop_oneof![
+        Just(0.0),
+        Just(-0.0),
+        (-2..=2).prop_map(f64::from),
+        -1.0..1.0,
+        Just(1e-300),
+        -1e200..1e200
+    ];
+    (proptest::array::uniform3(coordinate), proptest::array::uniform3(component)).prop_map(
+        |(origin, direction)| Ray {
+            origin: DVec3::from_array(origin),
+            direction: DVec3::from_array(direction),
+        },
+    )
 }

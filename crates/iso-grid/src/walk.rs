@@ -107,7 +107,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::Region;
+    use crate::{Region, testing};
 
     fn passages(region: &Region, cells: [u32; 3], ray: Ray) -> Vec<Passage> {
         let lattice = Lattice::new(region, cells);
@@ -145,37 +145,15 @@ mod tests {
         passages
     }
 
-    /// Coordinates that lie on planes between cells, in cells, and outside; directions along axes, slanted and backwards.
-    fn coordinate() -> impl Strategy<Value = f64> {
-        prop_oneof![(-12..=12).prop_map(|quarter| f64::from(quarter) / 4.0), -3.0..3.0]
-    }
-
-    fn component() -> impl Strategy<Value = f64> {
-        prop_oneof![
-            Just(0.0),
-            Just(-0.0),
-            (-2..=2).prop_map(f64::from),
-            -1.0..1.0,
-            Just(1e-300),
-            -1e200..1e200
-        ]
-    }
-
-    fn vector(component: impl Strategy<Value = f64>) -> impl Strategy<Value = DVec3> {
-        proptest::array::uniform3(component).prop_map(DVec3::from_array)
-    }
-
     proptest! {
-        #![proptest_config(ProptestConfig { cases: 4000, failure_persistence: None, rng_seed: proptest::test_runner::RngSeed::Fixed(1), ..ProptestConfig::default() })]
+        #![proptest_config(testing::property(4000))]
 
         #[test]
         fn cells_are_those_that_the_ray_crosses(
-            origin in vector(coordinate()),
-            direction in vector(component()),
+            ray in testing::ray(),
             cells in proptest::array::uniform3(1_u32..9),
         ) {
             let region = Region::new(DVec3::splat(-1.0), DVec3::new(1.0, 1.5, 2.0)).unwrap();
-            let ray = Ray { origin, direction };
             prop_assert_eq!(passages(&region, cells, ray), by_brute_force(&region, cells, ray));
         }
     }

@@ -1,0 +1,166 @@
+//! The search for existence cells from large blocks to single cells.
+
+use iso_expr::{BatchKernel, Scratch};
+use rayon::prelude::*;
+
+use super::Octree;
+use super::places::{PlaceMap, PlaceSet};
+use crate::batch::PointBatch;
+use crate::existence::{Examination, Suspect};
+use crate::lattice::{self, Lattice};
+use crate::sign::Signs;
+use crate::{Counters, GridError};
+
+/// How many blocks the longest axis holds at least when the search begins, unless it has fewer cells.
+const COARSEST: usize = 8;
+/// Points evaluated by one call of the kernel.
+const BATCH: usize = 1024;
+
+/// The places of the existence cells, in no particular order.
+pub(super) fn find(
+    kernel: &dyn BatchKernel,
+    lattice: &Lattice,
+    refinement: [u32; 3],
+    counters: &mut Counters,
+) -> Result<Vec<[usize; 3]>, GridError> {
+    let longest = lattice.cells().into_iter().max().unwrap_or(1);
+    let mut blocks = Blocks { lattice, side: 1 << (longest / COARSEST).max(1).ilog2() };
+    let mut signs = PointSigns { kernel, lattice, known: PlaceMap::default() };
+    let examination = Examination { kernel, refinement };
+    let mut candidates: Vec<[usize; 3]> =
+        (0..blocks.counts().iter().product()).map(|number| lattice::place(number, blocks.counts())).collect();
+    let holding = loop {
+        let holding = holding(&blocks, candidates, &mut signs, &examination, counters)?;
+        if blocks.side == 1 {
+            break holding;
+        }
+        candidates = holding.into_iter().flat_map(|block| blocks.parts(block)).collect();
+        blocks.side /= 2;
+    };
+    counters.preprocess_evaluations += signs.known.len() as u64;
+    counters.existence_cells += holding.len() as u64;
+    Ok(holding)
+}
+
+/// The blocks that hold the surface: those of `candidates` whose corners differ in sign, and all that are found from them,
+/// neighbour by neighbour.
+fn holding(
+    blocks: &Blocks<'_>,
+    candidates: Vec<[usize; 3]>,
+    signs: &mut PointSigns<'_>,
+    examination: &Examination<'_>,
+    counters: &mut Counters,
+) -> Result<Vec<[usize; 3]>, GridError> {
+    let mut looked_at = candidates.len() as u64;
+    check_count(looked_at)?;
+    signs.learn(blocks, &candidates);
+    let mut newest = candidates;
+    newest.retain(|&block| signs.at_corners(blocks, block).differ());
+    let mut labelled: PlaceSet = newest.iter().copied().collect();
+    let mut holding = Vec::new();
+    while !newest.is_empty() {
+        holding.extend_from_slice(&newest);
+        let bordering: Vec<_> = newest
+            .iter()
+            .flat_map(|&block| lattice::neighbours(block, blocks.counts()))
+            .filter(|&neighbour| labelled.insert(neighbour))
+            .collect();
+        looked_at += bordering.len() as u64;
+        check_count(looked_at)?;
+        signs.learn(blocks, &bordering);
+        let suspects: Vec<_>;
+        (newest, suspects) =
+            bordering.into_iter().partition(|&block| signs.at_corners(blocks, block).differ());
+        let found = examination.of_all(&suspects, |block| {
+            let [near, far] = blocks.span(block);
+            let signs = signs.at_corners(blocks, block);
+            Suspect { near: blocks.lattice.point(near), far: blocks.lattice.point(far), signs }
+        });
+        counters.examined_cells += suspects.len() as u64;
+        counters.rescued_cells += found.holding.len() as u64;
+        counters.preprocess_evaluations += found.evaluations;
+        newest.extend(found.holding);
+    }
+    counters.cells += looked_at;
+    Ok(holding)
+}
+
+fn check_count(given: u64) -> Result<(), GridError> {
+    let allowed = Octree::MOST_CELLS;
+    if given > allowed { Err(GridError::TooManyCells { method: "octree", given, allowed }) } else { Ok(()) }
+}
+
+/// The cells of a lattice taken together in cubes.
+struct Blocks<'a> {
+    lattice: &'a Lattice,
+    /// Cells along a block's side, a power of two.
+    side: usize,
+}
+
+impl Blocks<'_> {
+    /// The blocks along each axis.
+    fn counts(&self) -> [usize; 3] {
+        self.lattice.cells().map(|cells| cells.div_ceil(self.side))
+    }
+
+    /// The places of a block's first and last points.
+    fn span(&self, block: [usize; 3]) -> [[usize; 3]; 2] {
+        let point = |ahead: usize| {
+            [0, 1, 2].map(|axis| ((block[axis] + ahead) * self.side).min(self.lattice.cells()[axis]))
+        };
+        [point(0), point(1)]
+    }
+
+    /// The places of the points at a block's corners.
+    fn corners(&self, block: [usize; 3]) -> [[usize; 3]; 8] {
+        let ends = self.span(block);
+        lattice::corners([0; 3]).map(|end| [0, 1, 2].map(|axis| ends[end[axis]][axis]))
+    }
+
+    /// The blocks of half the side that make up a block.
+    fn parts(&self, block: [usize; 3]) -> impl Iterator<Item = [usize; 3]> + use<> {
+        let counts = Blocks { side: self.side / 2, ..*self }.counts();
+        lattice::corners(block.map(|place| 2 * place))
+            .into_iter()
+            .filter(move |part| part.iter().zip(counts).all(|(&place, count)| place < count))
+    }
+}
+
+/// The signs at those points of a lattice that were asked for, each evaluated once.
+struct PointSigns<'a> {
+    kernel: &'a dyn BatchKernel,
+    lattice: &'a Lattice,
+    known: PlaceMap<Signs>,
+}
+
+impl PointSigns<'_> {
+    /// Evaluates what is not yet known at the corners of some blocks.
+    fn learn(&mut self, blocks: &Blocks<'_>, of: &[[usize; 3]]) {
+        let mut unknown = Vec::new();
+        for corner in of.iter().flat_map(|&block| blocks.corners(block)) {
+            self.known.entry(corner).or_insert_with(|| {
+                unknown.push(corner);
+                Signs::NONE
+            });
+        }
+        let (kernel, lattice) = (self.kernel, self.lattice);
+        let learnt: Vec<Signs> = unknown
+            .par_chunks(BATCH)
+            .map_init(
+                || (PointBatch::default(), Scratch::default()),
+                |(batch, scratch), chunk| -> Vec<Signs> {
+                    batch.clear();
+                    chunk.iter().for_each(|&place| batch.push(lattice.point(place)));
+                    batch.evaluate(kernel, scratch, 1).iter().map(|&value| Signs::of(value)).collect()
+                },
+            )
+            .flatten_iter()
+            .collect();
+        self.known.extend(unknown.into_iter().zip(learnt));
+    }
+
+    /// The signs at a block's corners, which were learnt before.
+    fn at_corners(&self, blocks: &Blocks<'_>, block: [usize; 3]) -> Signs {
+        blocks.corners(block).map(|corner| self.known[&corner]).into_iter().collect()
+    }
+}
