@@ -31,7 +31,7 @@ fn sphere() -> Program {
 fn picture(size: Size, threads: usize) -> Picture {
     let program = sphere();
     let gradient = program.with_gradient();
-    let surface = Surface::new(Arc::new(Interpreter::default()), program, gradient);
+    let surface = Surface::new(Arc::new(Interpreter), program, gradient);
     let region = Region::new(DVec3::splat(-1.5), DVec3::splat(1.5)).unwrap();
     let tracer = Certified::new(&surface, region).unwrap();
     let view = View::Orbit { yaw: 0.0, pitch: 0.0, distance: Some(5.0) };
