@@ -1,7 +1,7 @@
 //! The tree above the existence cells, and the way of a ray through it.
 
-use crate::lattice::Lattice;
-use crate::walk::Passage;
+use crate::paper::lattice::Lattice;
+use crate::paper::walk::Passage;
 use crate::{Ray, Span};
 
 /// A sparse octree: each node knows which of its eight parts exist, and where the first of them is.
@@ -176,7 +176,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::walk::CellWalk;
+    use crate::paper::walk::CellWalk;
     use crate::{Region, testing};
 
     proptest! {
@@ -193,10 +193,10 @@ mod tests {
             let Some(span) = region.clip(&ray) else { return Ok(()) };
             let lattice = Lattice::new(&region, counts);
             let exists = |place: [usize; 3]| {
-                let number = crate::lattice::index(place, lattice.cells()) as u32;
+                let number = crate::paper::lattice::index(place, lattice.cells()) as u32;
                 left_out.rotate_left(number * 7) & 3 != 0
             };
-            let all = (0..lattice.cells().iter().product()).map(|number| crate::lattice::place(number, lattice.cells()));
+            let all = (0..lattice.cells().iter().product()).map(|number| crate::paper::lattice::place(number, lattice.cells()));
             let cells: Vec<_> = all.filter(|&place| exists(place)).collect();
             let tree = Tree::new(&cells, lattice.cells());
             let by_tree: Vec<_> = TreeWalk::new(&tree, &lattice, ray, span).collect();

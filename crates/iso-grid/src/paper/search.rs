@@ -1,8 +1,8 @@
 //! The search for the first change of sign along one ray.
 
 use crate::batch::PointBatch;
-use crate::sign::Signs;
-use crate::stretch::{Stretch, Stretches};
+use crate::paper::sign::Signs;
+use crate::paper::stretch::{Stretch, Stretches};
 use crate::{Hit, Outcome, Ray, Span};
 
 /// Samples asked for at once. Those behind the first change of sign are wasted, so there are few.

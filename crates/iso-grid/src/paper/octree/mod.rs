@@ -8,9 +8,10 @@ use std::sync::Arc;
 
 use iso_expr::BatchKernel;
 
-use crate::lattice::Lattice;
-use crate::stretch::{Spacing, Stretch, Stretches};
-use crate::{Counters, GridError, GridSettings, Outcome, Ray, Region, Surface, Tracer, Workspace, lockstep};
+use crate::paper::lattice::Lattice;
+use crate::paper::lockstep;
+use crate::paper::stretch::{Spacing, Stretch, Stretches};
+use crate::{Counters, GridError, GridSettings, Outcome, Ray, Region, Surface, Tracer, Workspace};
 use tree::{Tree, TreeWalk};
 
 /// The paper's closing idea: the sign test of [`Grid`](crate::Grid), made on blocks of cells first.

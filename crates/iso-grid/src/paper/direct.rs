@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use iso_expr::BatchKernel;
 
-use crate::settings::check_step;
-use crate::stretch::{Spacing, Stretch, Stretches};
-use crate::{Counters, GridError, Outcome, Ray, Region, Surface, Tracer, Workspace, lockstep};
+use crate::paper::lockstep;
+use crate::paper::settings::check_step;
+use crate::paper::stretch::{Spacing, Stretch, Stretches};
+use crate::{Counters, GridError, Outcome, Ray, Region, Surface, Tracer, Workspace};
 
 /// Samples each ray through the whole region and bisects at the first change of sign: the paper's N = 0.
 ///

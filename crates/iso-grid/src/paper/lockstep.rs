@@ -2,8 +2,8 @@
 
 use iso_expr::BatchKernel;
 
-use crate::search::Search;
-use crate::stretch::Stretches;
+use crate::paper::search::Search;
+use crate::paper::stretch::Stretches;
 use crate::{Outcome, Ray, Region, Span, Workspace};
 
 /// Searches under way at once: enough to fill a kernel's batch, few enough to stay in the nearest cache.

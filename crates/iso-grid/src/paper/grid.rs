@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use iso_expr::BatchKernel;
 
-use crate::existence::Cells;
-use crate::lattice::Lattice;
-use crate::stretch::{Spacing, Stretch, Stretches};
-use crate::walk::CellWalk;
-use crate::{Counters, GridError, GridSettings, Outcome, Ray, Region, Surface, Tracer, Workspace, lockstep};
+use crate::paper::existence::Cells;
+use crate::paper::lattice::Lattice;
+use crate::paper::lockstep;
+use crate::paper::stretch::{Spacing, Stretch, Stretches};
+use crate::paper::walk::CellWalk;
+use crate::{Counters, GridError, GridSettings, Outcome, Ray, Region, Surface, Tracer, Workspace};
 
 /// The paper's method: a grid that knows which of its cells hold the surface.
 ///

@@ -1,6 +1,6 @@
 //! The way of a ray through the cells of a grid.
 
-use crate::lattice::Lattice;
+use crate::paper::lattice::Lattice;
 use crate::{Ray, Span};
 
 /// The cells that a ray passes through, from the nearest to the farthest: the 3-D digital differential analyser of
@@ -121,7 +121,7 @@ mod tests {
         let Some(whole) = region.clip(&ray) else { return Vec::new() };
         let mut passages = Vec::new();
         for number in 0..lattice.cells().iter().product() {
-            let place = crate::lattice::place(number, lattice.cells());
+            let place = crate::paper::lattice::place(number, lattice.cells());
             let mut span = whole;
             for axis in 0..3 {
                 let planes = lattice.planes(axis);

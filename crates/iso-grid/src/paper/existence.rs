@@ -6,8 +6,8 @@ use rayon::prelude::*;
 
 use crate::Counters;
 use crate::batch::PointBatch;
-use crate::lattice::{self, Lattice};
-use crate::sign::Signs;
+use crate::paper::lattice::{self, Lattice};
+use crate::paper::sign::Signs;
 
 /// Points evaluated by one call of the kernel.
 const BATCH: usize = 1024;

@@ -6,9 +6,9 @@ use rayon::prelude::*;
 use super::Octree;
 use super::places::{PlaceMap, PlaceSet};
 use crate::batch::PointBatch;
-use crate::existence::{Examination, Suspect};
-use crate::lattice::{self, Lattice};
-use crate::sign::Signs;
+use crate::paper::existence::{Examination, Suspect};
+use crate::paper::lattice::{self, Lattice};
+use crate::paper::sign::Signs;
 use crate::{Counters, GridError};
 
 /// How many blocks the longest axis holds at least when the search begins, unless it has fewer cells.
