@@ -24,8 +24,8 @@ pub use rounding::{round_down, round_up};
 
 /// A closed interval of real numbers. Infinite ends stand for unbounded intervals; NaN ends for the empty set.
 ///
-/// Two intervals are equal when they hold the same numbers, whatever the signs of their zeros. Those that this module
-/// makes have +0 for a lower and −0 for an upper end; the module `rounding` says why.
+/// Two intervals are equal when they hold the same numbers, whatever the signs of their zeros. In those that this module
+/// makes, a lower end of zero is +0 and an upper one −0; the module `rounding` says why.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Interval {

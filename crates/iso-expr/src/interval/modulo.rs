@@ -1,7 +1,7 @@
 //! The remainder with the sign of the divisor.
 
 use super::arithmetic::negate;
-use super::rounding::{greater, lesser, round_down};
+use super::rounding::{lesser, round_down};
 use super::{Decorated, Decoration, Interval};
 
 /// a − b·⌊a/b⌋. Undefined where b is zero; jumps where a/b is an integer.
@@ -43,7 +43,7 @@ fn remainder(x: Interval, y: Interval, turns: f64) -> Interval {
     let (least_y, most_y) = if turns > 0.0 { (y.hi, y.lo) } else { (y.lo, y.hi) };
     let lo = round_down((-turns).mul_add(least_y, x.lo));
     let hi = -round_down(turns.mul_add(most_y, -x.hi));
-    Interval { lo: greater(lo, 0.0), hi: lesser(hi, y.hi) }
+    Interval { lo, hi: lesser(hi, y.hi) }
 }
 
 /// ⌊x/y⌋ for real x and y > 0, either of which may also be a limit at infinity; None where it is not a double or no such

@@ -47,7 +47,7 @@ fn power_down(base: f64, exponent: u32) -> f64 {
 /// An upper bound of a power of a number that is not negative.
 #[inline]
 fn power_up(base: f64, exponent: u32) -> f64 {
-    if base == 0.0 { 0.0 } else { power_rounded(base, exponent, round_up) }
+    if (base == 0.0) & (exponent > 0) { 0.0 } else { power_rounded(base, exponent, round_up) }
 }
 
 /// `base` multiplied by itself in the order of the operation's value: by squaring from the exponent's lowest bit up.
@@ -71,7 +71,7 @@ fn power_rounded(base: f64, exponent: u32, round: impl Fn(f64) -> f64) -> f64 {
 /// The second operand is a constant, a positive integer.
 #[inline]
 pub(crate) fn integer_power(a: Decorated, exponent: Decorated) -> Decorated {
-    if a.interval.is_empty() {
+    if a.interval.is_empty() | exponent.interval.is_empty() {
         return Decorated::EMPTY;
     }
     Decorated::enclosing(a.interval.to_the(exponent.interval.lo as u32), a.decoration)

@@ -34,15 +34,18 @@
 //! negate    lo = −a.hi, hi = −a.lo
 //! absolute  lo = a.lo > 0 ? a.lo : a.hi < 0 ? −a.hi : +0          hi = −a.lo > a.hi ? −a.lo : a.hi
 //! minimum   each end: a < b ? a : b              maximum   each end: a > b ? a : b
-//! root      lo = a.lo > 0 ? round_down(√a.lo) : +0                 hi = −round_down(−√a.hi); empty where a.hi < 0
+//! root      lo = a.lo ≤ 0 ? +0 : round_down(√a.lo)                 hi = −round_down(−√a.hi); empty where a.hi < 0
 //! power n   m = magnitude of the end (for even n: lo of absolute(a) for lo, hi of absolute(a) for hi)
 //!           down(m): every product is followed by round_down; up(m): by −round_down(−·), and is 0 where m = 0
 //!           even n: lo = down(m), hi = −(0 − up(m)), which makes a zero −0
 //!           odd n:  lo = a.lo < 0 ? −up(−a.lo) : down(a.lo),  hi = a.hi > 0 ? up(a.hi) : −down(−a.hi)
 //! ```
 //!
-//! Multiply, divide, minimum and maximum give the empty interval where an operand is empty; for the others that follows
-//! from the arithmetic of NaN. Decorations: see [`Decorated`](super::Decorated).
+//! An argument's ends are lo + 0 and −(0 − hi); it is empty unless lo ≤ hi, lo < +∞ and hi > −∞. Absolute, minimum,
+//! maximum, multiply and divide give the empty interval where an operand is empty; for the others that follows from the
+//! arithmetic of NaN. The decoration is the least of the operands' (of the base's alone for a power); no more than
+//! continuous unless lo > −∞ and hi < +∞ in the result; and trivial where a divisor holds zero, where the radicand's
+//! lower end is below zero, and for the empty interval.
 
 /// The greatest double below `value`, except that −∞ and NaN stay, and so does +0.
 ///

@@ -118,3 +118,25 @@ fn made_intervals_have_zeros_that_point_inwards() {
         }
     }
 }
+
+#[test]
+fn zeros_that_point_outwards_do_no_harm() {
+    let turn = |end: f64| if end == 0.0 { -end } else { end };
+    for operation in Operation::all() {
+        let mut random = Random::new(0x0127 + operation.index() as u64);
+        for _ in 0..CASES {
+            let operands = random_box(&mut random, operation);
+            let turned = operands.map(|Decorated { interval: Interval { lo, hi }, decoration }| Decorated {
+                interval: Interval { lo: turn(lo), hi: turn(hi) },
+                decoration,
+            });
+            let (expected, found) = (extend(operation, operands), extend(operation, turned));
+            let Interval { lo, hi } = expected.interval;
+            let widest = Interval { lo: lo.next_down(), hi: hi.next_up() };
+            let is_sound =
+                expected.interval.is_subset_of(found.interval) && found.interval.is_subset_of(widest);
+            assert!(is_sound, "{} = {expected}, found {found}", show(operation, operands));
+            assert_eq!(expected.decoration, found.decoration, "{}", show(operation, operands));
+        }
+    }
+}
