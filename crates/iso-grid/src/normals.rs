@@ -15,7 +15,7 @@ const APPROACH: [i32; 11] = [-40, -37, -34, -31, -28, -25, -22, -19, -16, -13, -
 /// The unit normal ∇F/|∇F| at each hit and touch, towards larger F whichever way the ray comes; NaN for other outcomes.
 /// All three slices are equally long.
 ///
-/// Where the gradient vanishes or is no finite vector, the normal is a limit: that of the points in front of the hit, on
+/// At a touch, and where the gradient vanishes or is no finite vector, the normal is a limit: that of the points in front of the hit, on
 /// the side that the ray comes from, the nearest that has one. So a double root such as (x² + y² + z² − 1)² = 0 has the
 /// normal of the side that is seen. NaN when no point up to 2⁻¹⁰ of the ray's way in front has one either.
 ///
@@ -45,7 +45,7 @@ pub fn normals(
         for met in met.chunks(BATCH) {
             points.clear();
             for met in met {
-                points.push(approach.map_or(met.ray.at(met.hit.t), |power| met.point_in_front(power)));
+                points.push(approach.map_or_else(|| met.point(), |power| met.point_in_front(power)));
             }
             unit_gradients(kernel, scratch, points, |number, normal| normals[met[number].place] = normal);
         }
@@ -59,14 +59,21 @@ struct Met {
     place: usize,
     ray: Ray,
     hit: Hit,
+    touches: bool,
 }
 
 impl Met {
     fn new((place, (ray, outcome)): (usize, (&Ray, &Outcome))) -> Option<Self> {
         match *outcome {
-            Outcome::Hit(hit) | Outcome::Touch(hit) => Some(Self { place, ray: *ray, hit }),
+            Outcome::Hit(hit) => Some(Self { place, ray: *ray, hit, touches: false }),
+            Outcome::Touch(hit) => Some(Self { place, ray: *ray, hit, touches: true }),
             Outcome::Miss | Outcome::Undecided(_) => None,
         }
+    }
+
+    /// The point itself. At a touch the gradient may be nothing but rounding, so there it is the nearest point in front.
+    fn point(&self) -> DVec3 {
+        if self.touches { self.point_in_front(APPROACH[0]) } else { self.ray.at(self.hit.t) }
     }
 
     /// The point in front of the bracket by 2 to this power of the way to it, or of the bracket's length if that is more.

@@ -30,6 +30,7 @@ pub(super) struct Line<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Course {
     pub(super) value: Decorated,
+    /// An empty slope is that of a function with no derivative anywhere here; its decoration says so.
     pub(super) slope: Decorated,
 }
 
@@ -38,8 +39,8 @@ const NOTHING_KNOWN: Decorated = Decorated { interval: Interval::ENTIRE, decorat
 impl Line<'_> {
     /// Encloses F over each of the stretches; what stands behind their number means nothing.
     pub(super) fn values(&mut self, stretches: &[Span]) -> [Decorated; BATCH] {
-        let outputs = self.enclose::<{ BATCH }>(&Arc::clone(&self.kernels.values), stretches);
-        std::array::from_fn(|place| outputs.output(0, place, stretches.len()))
+        let outputs = self.enclose::<{ BATCH }>(&*self.kernels.values, stretches);
+        std::array::from_fn(|place| outputs.at(place))
     }
 
     /// Encloses F at `t`.
@@ -49,12 +50,14 @@ impl Line<'_> {
 
     /// Encloses F and its slope over each of the stretches; what stands behind their number means nothing.
     pub(super) fn courses(&mut self, stretches: &[Span]) -> [Course; BATCH] {
-        let outputs = self.enclose::<{ 4 * BATCH }>(&Arc::clone(&self.kernels.gradients), stretches);
+        let outputs = self.enclose::<{ 4 * BATCH }>(&*self.kernels.gradients, stretches);
         let count = stretches.len();
-        std::array::from_fn(|place| Course {
-            value: outputs.output(0, place, count),
-            slope: self.slope([1, 2, 3].map(|output| outputs.output(output, place, count))),
-        })
+        let mut courses = [Course { value: NOTHING_KNOWN, slope: NOTHING_KNOWN }; BATCH];
+        for (place, course) in courses.iter_mut().enumerate().take(count) {
+            let partials = [1, 2, 3].map(|output| outputs.at(output * count + place));
+            *course = Course { value: outputs.at(place), slope: self.slope(partials) };
+        }
+        courses
     }
 
     /// Encloses F and its slope over a stretch.
@@ -83,19 +86,15 @@ impl Line<'_> {
         let mut slope = Decorated { interval: Interval::point(0.0), decoration: Decoration::Common };
         for (axis, partial) in gradient.into_iter().enumerate() {
             let direction = self.ray.direction[axis];
-            if direction == 0.0 {
-                continue;
+            if direction != 0.0 {
+                slope.interval = slope.interval.plus(scaled(partial.interval, direction));
+                slope.decoration = slope.decoration.min(partial.decoration);
             }
-            if partial.interval.is_empty() {
-                return NOTHING_KNOWN;
-            }
-            slope.interval = slope.interval.plus(partial.interval.times(Interval::point(direction)));
-            slope.decoration = slope.decoration.min(partial.decoration);
         }
         slope
     }
 
-    fn enclose<const N: usize>(&mut self, kernel: &Arc<dyn BoxKernel>, stretches: &[Span]) -> Outputs<N> {
+    fn enclose<const N: usize>(&mut self, kernel: &dyn BoxKernel, stretches: &[Span]) -> Outputs<N> {
         let count = stretches.len();
         let (mut lo, mut hi) = ([[0.0; BATCH]; 3], [[0.0; BATCH]; 3]);
         for (place, stretch) in stretches.iter().enumerate() {
@@ -130,9 +129,18 @@ struct Outputs<const N: usize> {
 }
 
 impl<const N: usize> Outputs<N> {
-    /// Output `output` of the box at `place` of `count`.
-    fn output(&self, output: usize, place: usize, count: usize) -> Decorated {
-        let at = (output * count + place).min(N - 1);
-        Decorated { interval: Interval { lo: self.lo[at], hi: self.hi[at] }, decoration: self.decoration[at] }
+    fn at(&self, place: usize) -> Decorated {
+        let interval = Interval { lo: self.lo[place], hi: self.hi[place] };
+        Decorated { interval, decoration: self.decoration[place] }
+    }
+}
+
+/// Encloses the products of the finite `factor`, which is not zero, and the numbers of `interval`.
+fn scaled(interval: Interval, factor: f64) -> Interval {
+    let (a, b) = (interval.lo * factor, interval.hi * factor);
+    if factor > 0.0 {
+        Interval { lo: round_down(a), hi: round_up(b) }
+    } else {
+        Interval { lo: round_down(b), hi: round_up(a) }
     }
 }

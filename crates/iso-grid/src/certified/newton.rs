@@ -1,4 +1,4 @@
-//! The interval Newton method for the one simple root of a stretch.
+//! The one simple root of a stretch, by the interval Newton method, and the extremum of a stretch, by bisection.
 
 use iso_expr::Interval;
 
@@ -29,6 +29,21 @@ impl Line<'_> {
             }
         }
         root
+    }
+
+    /// A point of `stretch` where the slope, which has unlike signs at its ends, is zero or lost in rounding.
+    pub(super) fn extremum(&mut self, stretch: Span) -> f64 {
+        let Span { mut start, mut end } = stretch;
+        let slope_at = |line: &mut Self, t| side(line.course(Span { start: t, end: t }).slope.interval);
+        let before = slope_at(self, start);
+        loop {
+            let middle = start + 0.5 * (end - start);
+            let here = slope_at(self, middle);
+            if here.is_none() || middle <= start || middle >= end {
+                return middle;
+            }
+            if here == before { start = middle } else { end = middle }
+        }
     }
 }
 

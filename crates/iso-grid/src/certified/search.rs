@@ -6,6 +6,7 @@ use iso_expr::{Decoration, Program};
 use super::classify::{Finding, classify, free_of_zero};
 use super::clip::Clip;
 use super::line::Line;
+use super::side::side;
 use crate::{Hit, Outcome, Span};
 
 /// Into how many parts an open stretch is cut.
@@ -115,24 +116,33 @@ impl Search<'_> {
         if value.decoration < Decoration::Continuous {
             return (!self.pieces_are_free(stretch)).then_some(Outcome::Undecided(stretch));
         }
+        let mut valley = None;
         let mut margin = (stretch.end - stretch.start).max(self.resolution(stretch));
         for _ in 0..WIDENINGS {
             let wide =
                 Span { start: round_down(stretch.start - margin), end: round_up(stretch.end + margin) };
             let course = self.line.course(wide);
-            let ends = [wide.start, wide.end].map(|t| self.line.value_at(t));
-            match classify(wide, course, ends[0], ends[1]) {
+            let [before, after, ..] =
+                self.line.courses(&[wide.start, wide.end].map(|t| Span { start: t, end: t }));
+            match classify(wide, course, before.value.interval, after.value.interval) {
                 None => return None,
                 Some((narrowed, Finding::Crossing)) => return self.place(narrowed),
                 Some(_) => margin *= 2.0,
             }
+            let (falls, rises) = (side(before.slope.interval), side(after.slope.interval));
+            if valley.is_none() && falls.is_some() && rises.is_some() && falls != rises {
+                valley = Some(wide);
+            }
         }
-        let middle = stretch.start + 0.5 * (stretch.end - stretch.start);
-        Some(if value.interval.is_bounded() {
-            Outcome::Touch(Hit { t: middle, bracket: stretch })
-        } else {
-            Outcome::Undecided(stretch)
-        })
+        if !value.interval.is_bounded() {
+            return Some(Outcome::Undecided(stretch));
+        }
+        let t = match valley {
+            Some(valley) => self.line.extremum(valley),
+            None => stretch.start + 0.5 * (stretch.end - stretch.start),
+        };
+        let bracket = Span { start: stretch.start.min(t), end: stretch.end.max(t) };
+        Some(Outcome::Touch(Hit { t, bracket }))
     }
 
     /// Ends the search at the one simple root of a stretch, unless it lies outside the region.
