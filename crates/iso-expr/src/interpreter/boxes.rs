@@ -1,82 +1,87 @@
-//! Boxes, one at a time.
+//! Many boxes, a block at a time.
 
-use super::code::{Code, Slot};
+use super::block::{self, Block, Loop};
+use super::code::Code;
 use crate::engine::{BoxKernel, Boxes, Enclosures, Scratch};
-use crate::{Decorated, Extension};
+use crate::interval::extension;
+use crate::{Decorated, Extension, Operation};
 
-/// A kernel over boxes: every slot holds a decorated interval.
+/// A kernel over batches of boxes.
 #[derive(Debug)]
 pub(super) struct Boxed {
-    steps: Vec<Step>,
+    code: Code,
     constants: Vec<Decorated>,
-    slots: usize,
-    outputs: Vec<Slot>,
-}
-
-/// An instruction with what it calls.
-#[derive(Debug)]
-struct Step {
-    extension: Extension,
-    target: Slot,
-    operands: [Slot; 3],
+    /// The most boxes in a block.
+    block: usize,
 }
 
 impl Boxed {
     pub(super) fn new(code: Code) -> Self {
-        let first_register = code.first_register();
-        let steps = code.instructions.iter().map(|instruction| Step {
-            extension: instruction.operation.extension(),
-            target: first_register as Slot + instruction.target,
-            operands: instruction.operands,
-        });
-        Self {
-            steps: steps.collect(),
-            constants: code
-                .constants
-                .iter()
-                .map(|constant| Decorated::constant(constant.enclosure()))
-                .collect(),
-            slots: first_register + code.registers,
-            outputs: code.outputs,
-        }
+        let constants =
+            code.constants.iter().map(|constant| Decorated::constant(constant.enclosure())).collect();
+        let block = block::length::<Decorated>(3 + code.registers);
+        Self { code, constants, block }
     }
 }
 
 impl BoxKernel for Boxed {
     fn evaluate(&self, scratch: &mut Scratch, boxes: Boxes<'_>, enclosures: Enclosures<'_>) {
         let count = boxes.lo[0].len();
-        assert!(boxes.lo.iter().chain(&boxes.hi).all(|ends| ends.len() == count), "six ends for each box");
         let Enclosures { lo, hi, decoration } = enclosures;
-        let expected = count * self.outputs.len();
-        assert!(
-            [lo.len(), hi.len(), decoration.len()] == [expected; 3],
-            "one enclosure for each output and box"
+        let expected = count * self.code.outputs.len();
+        assert!(boxes.lo.iter().chain(&boxes.hi).all(|ends| ends.len() == count), "six ends for each box");
+        assert_eq!(
+            [lo.len(), hi.len(), decoration.len()],
+            [expected; 3],
+            "an enclosure for each output and box"
         );
-        let slots = scratch.enclosures(self.slots);
-        slots[Code::FIRST_CONSTANT..][..self.constants.len()].copy_from_slice(&self.constants);
-        for index in 0..count {
-            for ((slot, lo), hi) in slots.iter_mut().zip(boxes.lo).zip(boxes.hi) {
-                *slot = Decorated::argument(lo[index], hi[index]);
+
+        let room = scratch.enclosures((3 + self.code.registers) * self.block);
+        let (arguments, registers) = room.split_at_mut(3 * self.block);
+        for start in (0..count).step_by(self.block) {
+            let length = self.block.min(count - start);
+            for (axis, arguments) in arguments.chunks_exact_mut(self.block).enumerate() {
+                let ends = boxes.lo[axis][start..].iter().zip(&boxes.hi[axis][start..]);
+                for (argument, (lo, hi)) in arguments.iter_mut().zip(ends) {
+                    *argument = Decorated::argument(*lo, *hi);
+                }
             }
-            self.run(slots);
-            for (place, output) in self.outputs.iter().enumerate() {
-                let Decorated { interval, decoration: known } = slots[*output as usize];
-                let place = place * count + index;
-                (lo[place], hi[place], decoration[place]) = (interval.lo, interval.hi, known);
+            let argument = |axis: usize| &arguments[axis * self.block..][..length];
+            let block = Block {
+                arguments: [argument(0), argument(1), argument(2)],
+                constants: &self.constants,
+                stride: self.block,
+            };
+            block.run(&self.code, registers, |instruction, lanes| extend(instruction.operation, lanes));
+            for (place, output) in self.code.outputs.iter().enumerate() {
+                let enclosures = block.output(*output, registers);
+                for lane in 0..length {
+                    let (enclosure, place) = (enclosures.at(lane), place * count + start + lane);
+                    (lo[place], hi[place]) = (enclosure.interval.lo, enclosure.interval.hi);
+                    decoration[place] = enclosure.decoration;
+                }
             }
         }
     }
 }
 
-impl Boxed {
-    fn run(&self, slots: &mut [Decorated]) {
-        for step in &self.steps {
-            let operand = |place: usize| slots[step.operands[place] as usize];
-            slots[step.target as usize] = match step.extension {
-                Extension::Unary(extend) => extend(operand(0)),
-                Extension::Binary(extend) => extend(operand(0), operand(1)),
-                Extension::Ternary(extend) => extend(operand(0), operand(1), operand(2)),
-            };
-        }
+/// Runs one instruction. The loops of the commonest operations are compiled each for its own; for the others the call
+/// costs little beside the work.
+fn extend(operation: Operation, lanes: Loop<'_, Decorated>) {
+    match operation {
+        Operation::Add => lanes.binary(extension::add),
+        Operation::Subtract => lanes.binary(extension::subtract),
+        Operation::Multiply => lanes.binary(extension::multiply),
+        Operation::Divide => lanes.binary(extension::divide),
+        Operation::Negate => lanes.unary(extension::negate),
+        Operation::Minimum => lanes.binary(extension::minimum),
+        Operation::Maximum => lanes.binary(extension::maximum),
+        Operation::SquareRoot => lanes.unary(extension::square_root),
+        Operation::IntegerPower => lanes.binary(extension::integer_power),
+        _ => match operation.extension() {
+            Extension::Unary(extend) => lanes.unary(extend),
+            Extension::Binary(extend) => lanes.binary(extend),
+            Extension::Ternary(extend) => lanes.ternary(extend),
+        },
     }
 }

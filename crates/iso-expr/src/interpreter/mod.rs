@@ -5,6 +5,7 @@
 //! over boxes run it on decorated intervals.
 
 mod batch;
+mod block;
 mod boxes;
 mod code;
 mod dispatch;
