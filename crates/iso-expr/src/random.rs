@@ -27,6 +27,9 @@ const SPECIAL: [f64; 18] = [
     9_007_199_254_740_992.0,
 ];
 
+/// Constants as they stand in formulas, of which much can be simplified.
+const SIMPLE: [f64; 12] = [0.0, -0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 4.0, 0.5, 0.25, 10.0];
+
 /// A generator of pseudo-random numbers: SplitMix64 (Steele, Lea and Flood, 'Fast splittable pseudorandom number
 /// generators', 2014).
 #[derive(Clone, Debug)]
@@ -184,8 +187,12 @@ impl Random {
     fn operand(&mut self, program: &mut Program, nodes: &[NodeId]) -> NodeId {
         match self.below(8) {
             0 => {
-                let constant = self.double();
-                program.literal(if self.below(4) == 0 { constant } else { self.coordinate() })
+                let constant = match self.below(5) {
+                    0..3 => self.choose(&SIMPLE),
+                    3 => self.coordinate(),
+                    _ => self.double(),
+                };
+                program.literal(constant)
             }
             1..4 => nodes[self.below(nodes.len())],
             _ => nodes[nodes.len() - 1 - self.below(nodes.len().min(5))],
