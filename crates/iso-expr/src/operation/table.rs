@@ -75,5 +75,5 @@ pub(super) static ROWS: &[Row] = rows! {
     Less           Binary  "<"           []                   less;
     LessOrEqual    Binary  "<="          []                   less_or_equal;
     Equal          Binary  "=="          []                   equal;
-    Select         Ternary "if"          []                   select;
+    Select         Ternary "if"          ["if"]               select;
 };

@@ -1,0 +1,66 @@
+//! A place among the items of a text.
+
+use super::item::{Item, Kind};
+use super::limits;
+use super::{FormulaError, FormulaErrorKind};
+use std::ops::Range;
+
+/// The items still to be read, and what is noted of those already read.
+pub(super) struct Cursor<'t> {
+    items: Vec<Item<'t>>,
+    next: usize,
+    /// How deep the text nests, and where it first goes beyond the limit.
+    deepest: (usize, Range<usize>),
+}
+
+impl<'t> Cursor<'t> {
+    /// `items` must end with an end item.
+    pub(super) fn new(items: Vec<Item<'t>>) -> Self {
+        Self { items, next: 0, deepest: (0, 0..0) }
+    }
+
+    pub(super) fn peek(&self) -> Item<'t> {
+        self.items[self.next]
+    }
+
+    /// The item after [`Cursor::peek`].
+    pub(super) fn second(&self) -> Item<'t> {
+        self.items[(self.next + 1).min(self.items.len() - 1)]
+    }
+
+    /// The item before [`Cursor::peek`].
+    pub(super) fn previous(&self) -> Option<Item<'t>> {
+        self.next.checked_sub(1).map(|place| self.items[place])
+    }
+
+    /// The last item before [`Cursor::peek`] that is not the end of a line.
+    pub(super) fn previous_on_lines(&self) -> Option<Item<'t>> {
+        self.items[..self.next].iter().rev().find(|item| item.kind != Kind::newline).copied()
+    }
+
+    /// Steps over an item; the end stays.
+    pub(super) fn advance(&mut self) {
+        self.next = (self.next + 1).min(self.items.len() - 1);
+    }
+
+    /// Notes that `item` opens a level of nesting.
+    pub(super) fn note_depth(&mut self, depth: usize, item: &Item<'_>) {
+        if depth == limits::DEEPEST_NESTING + 1 && self.deepest.0 < depth {
+            self.deepest.1 = item.span();
+        }
+        self.deepest.0 = self.deepest.0.max(depth);
+    }
+
+    /// That the text nested no deeper than is allowed.
+    pub(super) fn check_depth(&self) -> Result<(), FormulaError> {
+        let (given, ref span) = self.deepest;
+        let allowed = limits::DEEPEST_NESTING;
+        if given > allowed {
+            let kind = FormulaErrorKind::TooDeep { given, allowed };
+            return Err(
+                FormulaError::new(kind, span.clone()).with_help("name the inner parts: `a := …; f(a)`")
+            );
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,196 @@
+//! What is said of an expression that cannot be read.
+
+use std::ops::Range;
+
+use super::error::{FormulaError, FormulaErrorKind};
+use super::function::ArgumentCount;
+use super::item::{Item, Kind, shortened};
+use super::scope::{Parameters, Scope};
+use super::suggestion::suggestion;
+
+/// The double that a number reads as.
+pub(super) fn number(item: &Item<'_>) -> Result<f64, FormulaError> {
+    in_range(item, &item.text.replace('−', "-"))
+}
+
+/// The number that superscript digits, and perhaps a superscript minus, read as.
+pub(super) fn superscript(item: &Item<'_>) -> Result<f64, FormulaError> {
+    const DIGITS: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+    let digit = |character| DIGITS.chars().position(|digit| digit == character);
+    let digits = item.text.chars().map(|character| match digit(character) {
+        Some(digit) => char::from(b'0' + digit as u8),
+        None => '-',
+    });
+    in_range(item, &digits.collect::<String>())
+}
+
+fn in_range(item: &Item<'_>, text: &str) -> Result<f64, FormulaError> {
+    let value: f64 = text.parse().expect("the grammar lets only numbers pass");
+    let mantissa = text.split(['e', 'E']).next().unwrap_or(text);
+    let is_zero = !mantissa.contains(|character| ('1'..='9').contains(&character));
+    if value.is_finite() && (value != 0.0 || is_zero) {
+        return Ok(value);
+    }
+    let kind = FormulaErrorKind::NumberOutOfRange { number: shortened(item.text) };
+    Err(FormulaError::new(kind, item.span()).with_help("numbers lie between 4.9e-324 and 1.8e308 in size"))
+}
+
+/// A name that means nothing; `next` and `previous` stand around it.
+pub(super) fn unknown_name(
+    item: &Item<'_>,
+    next: &Item<'_>,
+    previous: Option<Item<'_>>,
+    scope: &Scope<'_>,
+    parameters: &Parameters<'_>,
+) -> FormulaError {
+    let is_called = next.kind == Kind::open;
+    let name = shortened(item.text);
+    if item.text == "log" {
+        return bare_logarithm(item.span());
+    }
+    let starts_statement = previous.is_none_or(|item| matches!(item.kind, Kind::semicolon | Kind::newline));
+    let help = match suggestion(item.text, is_called, scope, parameters) {
+        _ if starts_statement && next.kind == Kind::equal => format!("to define it, write `{name} := …`"),
+        Some(help) => help,
+        None if is_called => format!("define it before: `{name}(u) := …`"),
+        None => format!("the coordinates are x, y and z; define others before: `{name} := 1`"),
+    };
+    let kind = match is_called {
+        true => FormulaErrorKind::UnknownFunction { name },
+        false => FormulaErrorKind::UnknownName { name },
+    };
+    FormulaError::new(kind, item.span()).with_help(help)
+}
+
+/// A function's name without a parenthesis after it.
+pub(super) fn missing_arguments(item: &Item<'_>, next: &Item<'_>) -> FormulaError {
+    if item.text == "log" {
+        return bare_logarithm(item.span());
+    }
+    let name = shortened(item.text);
+    let help = match next.kind {
+        Kind::name | Kind::number | Kind::pi | Kind::tau => {
+            format!("write `{name}({})`", shortened(next.text))
+        }
+        Kind::power | Kind::superscript => format!("write the power after the arguments: `{name}(x)^2`"),
+        _ => format!("its arguments stand in parentheses: `{name}(…)`"),
+    };
+    FormulaError::new(FormulaErrorKind::MissingArguments { name }, item.span()).with_help(help)
+}
+
+fn bare_logarithm(span: Range<usize>) -> FormulaError {
+    let help = "write `ln(x)` for base e, `log2(x)`, `log10(x)`, or `log(b, x)` for base b";
+    FormulaError::new(FormulaErrorKind::BareLogarithm, span).with_help(help)
+}
+
+/// A call with the wrong number of arguments; `pattern` is how it should look.
+pub(super) fn argument_count(
+    name: &str,
+    given: usize,
+    expected: ArgumentCount,
+    span: Range<usize>,
+    pattern: String,
+) -> FormulaError {
+    if name == "log" && given == 1 {
+        return bare_logarithm(span);
+    }
+    let kind =
+        FormulaErrorKind::ArgumentCount { function: shortened(name), given, expected: expected.shown() };
+    FormulaError::new(kind, span).with_help(format!("it is called as `{}`", shortened(&pattern)))
+}
+
+/// A bracket that nothing closes.
+pub(super) fn unclosed(open: &Item<'_>) -> FormulaError {
+    match open.kind {
+        Kind::bar => FormulaError::new(FormulaErrorKind::UnclosedBar, open.span())
+            .with_help("bars that stand inside each other are clearer as `abs(…)`"),
+        _ => FormulaError::new(FormulaErrorKind::UnclosedParenthesis, open.span()).with_help("add `)`"),
+    }
+}
+
+/// A comma outside of a function's arguments.
+pub(super) fn stray_comma(item: &Item<'_>) -> FormulaError {
+    FormulaError::new(FormulaErrorKind::StrayComma, item.span()).with_help(
+        "decimals are written with a point, as in `0.5`; what stands before the parenthesis is no function",
+    )
+}
+
+/// A character that the language does not use.
+pub(super) fn stray(item: &Item<'_>) -> FormulaError {
+    let character = item.text.chars().next().unwrap_or_default();
+    let help = match character {
+        '%' => Some("write `mod(a, b)` for the remainder of a divided by b, with the sign of b"),
+        '[' | ']' | '{' | '}' => Some("use parentheses `(` `)`"),
+        '&' => Some("write `and`"),
+        '!' => Some("write `not`, or `!=` for inequality"),
+        ':' => Some("write `:=` for a definition"),
+        '.' => Some("a point stands in numbers only, as in `0.5`"),
+        '\'' | '"' => Some("a formula is written without quotation marks"),
+        '?' => Some("write `if(condition, a, b)`"),
+        _ => None,
+    };
+    FormulaError::new(FormulaErrorKind::StrayCharacter { character }, item.span())
+        .with_possible_help(help.map(str::to_owned))
+}
+
+/// Something else where an operand should start. `previous` is the last item on any line, `before` the last item.
+pub(super) fn missing_operand(
+    item: &Item<'_>,
+    previous: Option<Item<'_>>,
+    before: Option<Item<'_>>,
+) -> FormulaError {
+    let is_head = matches!(item.kind, Kind::function_head | Kind::value_head | Kind::define);
+    let follows_line = before.is_some_and(|item| item.kind == Kind::newline);
+    let ends = matches!(item.kind, Kind::EOI | Kind::semicolon) || is_head && follows_line;
+    match previous {
+        Some(operator) if ends && !is_statement_start(&operator) => {
+            let kind = FormulaErrorKind::TrailingOperator { operator: operator.text.to_owned() };
+            FormulaError::new(kind, operator.span()).with_help("give its right operand, or take it away")
+        }
+        _ if is_head => misplaced_definition(item),
+        _ => {
+            let kind = FormulaErrorKind::MissingOperand { found: item.shown() };
+            let help = follows_line.then(|| {
+                "a statement ends with its line, unless the line ends with an operator or inside parentheses".to_owned()
+            });
+            FormulaError::new(kind, item.span()).with_possible_help(help)
+        }
+    }
+}
+
+fn is_statement_start(item: &Item<'_>) -> bool {
+    matches!(item.kind, Kind::semicolon | Kind::function_head | Kind::value_head)
+}
+
+/// An operand that follows another, but cannot be its factor.
+pub(super) fn missing_operator(item: &Item<'_>) -> FormulaError {
+    FormulaError::new(FormulaErrorKind::MissingOperator { found: item.shown() }, item.span())
+        .with_help("a number stands before what it multiplies; write `*` or `^` between two factors")
+}
+
+/// `:=` in the middle of an expression.
+pub(super) fn misplaced_definition(item: &Item<'_>) -> FormulaError {
+    FormulaError::new(FormulaErrorKind::MisplacedDefinition, item.span())
+        .with_help("a statement of its own defines a name, `a := 1`, or a function, `f(u) := u^2`; `;` or a new line ends it")
+}
+
+/// `=` where only `==` can stand.
+pub(super) fn equation_inside(item: &Item<'_>, in_brackets: bool) -> FormulaError {
+    let help = match in_brackets {
+        true => "write `==` to compare",
+        false => "write `==` to compare; the equation is a statement after the definitions",
+    };
+    FormulaError::new(FormulaErrorKind::EquationInside, item.span()).with_help(help)
+}
+
+/// A second statement that is no definition.
+pub(super) fn second_formula(span: Range<usize>, both_are_equations: bool) -> FormulaError {
+    match both_are_equations {
+        true => FormulaError::new(FormulaErrorKind::TwoEquations, span)
+            .with_help("a picture of both is the product of their left sides, each less its right side"),
+        false => FormulaError::new(FormulaErrorKind::TwoFormulas, span).with_help(
+            "a statement ends with its line, unless the line ends with an operator or inside parentheses; \
+             definitions are written with `:=`",
+        ),
+    }
+}
