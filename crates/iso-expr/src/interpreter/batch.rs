@@ -36,7 +36,7 @@ impl BatchKernel for Batch {
                 constants: &self.constants,
                 stride: self.block,
             };
-            block.run(&self.code, registers, |instruction, lanes| visit(instruction.operation, lanes));
+            block.run(&self.code, registers, |operation, lanes| visit(operation, lanes));
             for (output, values) in self.code.outputs.iter().zip(values.chunks_exact_mut(count)) {
                 match block.output(*output, registers) {
                     Operand::Lanes(lanes) => values[range.clone()].copy_from_slice(lanes),
@@ -47,7 +47,7 @@ impl BatchKernel for Batch {
     }
 }
 
-impl Visitor for Loop<'_, f64> {
+impl Visitor for &mut Loop<'_, f64> {
     type Output = ();
 
     fn unary(self, value: impl Fn(f64) -> f64) {

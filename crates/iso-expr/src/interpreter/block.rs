@@ -1,6 +1,7 @@
 //! Instructions over blocks: a register holds one value for each point or box of a block.
 
 use super::code::{Code, Instruction, Slot};
+use crate::Operation;
 
 /// Bytes of all registers together that leave room in a first-level cache of 32 KiB for arguments and outputs.
 const REGISTER_BUDGET: usize = 20 * 1024;
@@ -26,33 +27,31 @@ pub(super) struct Block<'a, T> {
 
 impl<T: Copy> Block<'_, T> {
     /// Runs all instructions of `code`, each by `execute`.
-    pub(super) fn run(&self, code: &Code, registers: &mut [T], execute: impl Fn(&Instruction, Loop<'_, T>)) {
-        for instruction in &code.instructions {
-            let target = instruction.target as usize;
-            let (before, rest) = registers.split_at_mut(target * self.stride);
+    pub(super) fn run(
+        &self,
+        code: &Code,
+        registers: &mut [T],
+        execute: impl Fn(Operation, &mut Loop<'_, T>),
+    ) {
+        for Instruction { operation, target, operands } in &code.instructions {
+            let (before, rest) = registers.split_at_mut(*target as usize * self.stride);
             let (result, after) = rest.split_at_mut(self.stride);
-            let operands = instruction.operands.map(|slot| {
-                self.operand(slot, |register| {
-                    if register < target {
-                        &before[register * self.stride..]
-                    } else {
-                        &after[(register - target - 1) * self.stride..]
-                    }
-                })
-            });
-            execute(instruction, Loop { result: &mut result[..self.length()], operands });
+            let result = &mut result[..self.length()];
+            execute(*operation, &mut Loop { block: self, before, after, result, operands: *operands });
         }
     }
 
     /// What has been computed for the output at `slot`.
     pub(super) fn output<'a>(&'a self, slot: Slot, registers: &'a [T]) -> Operand<'a, T> {
-        self.operand(slot, |register| &registers[register * self.stride..])
+        self.operand(slot, |start| &registers[start..])
     }
 
     fn length(&self) -> usize {
         self.arguments[0].len()
     }
 
+    /// The operand at `slot`; `register` gives what stands from a place among the registers.
+    #[inline]
     fn operand<'a>(&'a self, slot: Slot, register: impl FnOnce(usize) -> &'a [T]) -> Operand<'a, T> {
         let slot = slot as usize;
         if let Some(argument) = self.arguments.get(slot) {
@@ -60,7 +59,7 @@ impl<T: Copy> Block<'_, T> {
         } else if let Some(constant) = self.constants.get(slot - Code::FIRST_CONSTANT) {
             Operand::Constant(*constant)
         } else {
-            let register = register(slot - Code::FIRST_CONSTANT - self.constants.len());
+            let register = register((slot - Code::FIRST_CONSTANT - self.constants.len()) * self.stride);
             Operand::Lanes(&register[..self.length()])
         }
     }
@@ -88,14 +87,27 @@ impl<T: Copy> Operand<'_, T> {
 /// One instruction over a block. Each combination of operands gets a loop of its own, without branches, which compiles to
 /// vector instructions where the function allows it.
 pub(super) struct Loop<'a, T> {
+    block: &'a Block<'a, T>,
+    /// The registers before the one that takes the result, and those after it.
+    before: &'a [T],
+    after: &'a [T],
     result: &'a mut [T],
-    operands: [Operand<'a, T>; 3],
+    operands: [Slot; 3],
 }
 
-impl<T: Copy> Loop<'_, T> {
+impl<'a, T: Copy> Loop<'a, T> {
     #[inline]
-    pub(super) fn unary(self, function: impl Fn(T) -> T) {
-        match self.operands[0] {
+    fn operand(&self, place: usize) -> Operand<'a, T> {
+        let start_of_after = self.before.len() + self.block.stride;
+        self.block.operand(self.operands[place], |start| match start.checked_sub(start_of_after) {
+            Some(start) => &self.after[start..],
+            None => &self.before[start..],
+        })
+    }
+
+    #[inline]
+    pub(super) fn unary(&mut self, function: impl Fn(T) -> T) {
+        match self.operand(0) {
             Operand::Lanes(a) => {
                 for (result, a) in self.result.iter_mut().zip(a) {
                     *result = function(*a);
@@ -106,8 +118,8 @@ impl<T: Copy> Loop<'_, T> {
     }
 
     #[inline]
-    pub(super) fn binary(self, function: impl Fn(T, T) -> T) {
-        match (self.operands[0], self.operands[1]) {
+    pub(super) fn binary(&mut self, function: impl Fn(T, T) -> T) {
+        match (self.operand(0), self.operand(1)) {
             (Operand::Lanes(a), Operand::Lanes(b)) => {
                 for ((result, a), b) in self.result.iter_mut().zip(a).zip(b) {
                     *result = function(*a, *b);
@@ -128,8 +140,8 @@ impl<T: Copy> Loop<'_, T> {
     }
 
     #[inline]
-    pub(super) fn ternary(self, function: impl Fn(T, T, T) -> T) {
-        let [a, b, c] = self.operands;
+    pub(super) fn ternary(&mut self, function: impl Fn(T, T, T) -> T) {
+        let (a, b, c) = (self.operand(0), self.operand(1), self.operand(2));
         for (lane, result) in self.result.iter_mut().enumerate() {
             *result = function(a.at(lane), b.at(lane), c.at(lane));
         }

@@ -52,7 +52,7 @@ impl BoxKernel for Boxed {
                 constants: &self.constants,
                 stride: self.block,
             };
-            block.run(&self.code, registers, |instruction, lanes| extend(instruction.operation, lanes));
+            block.run(&self.code, registers, extend);
             for (place, output) in self.code.outputs.iter().enumerate() {
                 let enclosures = block.output(*output, registers);
                 for lane in 0..length {
@@ -67,7 +67,7 @@ impl BoxKernel for Boxed {
 
 /// Runs one instruction. The loops of the commonest operations are compiled each for its own; for the others the call
 /// costs little beside the work.
-fn extend(operation: Operation, lanes: Loop<'_, Decorated>) {
+fn extend(operation: Operation, lanes: &mut Loop<'_, Decorated>) {
     match operation {
         Operation::Add => lanes.binary(extension::add),
         Operation::Subtract => lanes.binary(extension::subtract),
