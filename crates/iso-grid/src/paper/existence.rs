@@ -11,6 +11,8 @@ use crate::paper::sign::Signs;
 
 /// Points evaluated by one call of the kernel.
 const BATCH: usize = 1024;
+/// Cells examined together.
+const SUSPECTS: usize = 64;
 
 /// The cells of a grid, and which of them hold the surface.
 #[derive(Debug)]
@@ -152,42 +154,49 @@ impl Examination<'_> {
         cells: &[C],
         suspect: impl Fn(C) -> Suspect + Sync,
     ) -> Found<C> {
-        let looks: Vec<(bool, u64)> = cells
-            .par_iter()
+        let examined: Vec<(Vec<C>, u64)> = cells
+            .par_chunks(SUSPECTS)
             .map_init(
                 || (PointBatch::default(), Scratch::default()),
-                |(batch, scratch), &cell| self.of_one(&suspect(cell), batch, scratch),
+                |(batch, scratch), cells| {
+                    let mut suspects: Vec<Suspect> = cells.iter().map(|&cell| suspect(cell)).collect();
+                    let evaluations = self.of_some(&mut suspects, batch, scratch);
+                    let holding = cells.iter().zip(&suspects).filter(|(_, suspect)| suspect.signs.differ());
+                    (holding.map(|(&cell, _)| cell).collect(), evaluations)
+                },
             )
             .collect();
         Found {
-            holding: cells.iter().zip(&looks).filter(|(_, look)| look.0).map(|(&cell, _)| cell).collect(),
-            evaluations: looks.iter().map(|look| look.1).sum(),
+            evaluations: examined.iter().map(|(_, evaluations)| evaluations).sum(),
+            holding: examined.into_iter().flat_map(|(holding, _)| holding).collect(),
         }
     }
 
-    /// Whether the corners of a cell's parts differ in sign, and how many of them were evaluated to see it: a layer of
-    /// parts at a time, until signs differ.
-    fn of_one(&self, suspect: &Suspect, batch: &mut PointBatch, scratch: &mut Scratch) -> (bool, u64) {
+    /// Adds the signs at the corners of each cell's parts to the cell's own, a layer of corners at a time, until they
+    /// differ. Says how many corners were evaluated.
+    fn of_some(&self, suspects: &mut [Suspect], batch: &mut PointBatch, scratch: &mut Scratch) -> u64 {
         let [parts_x, parts_y, parts_z] = self.refinement;
-        let mut signs = suspect.signs;
         let mut evaluations = 0;
         for k in 0..=parts_z {
+            let layer: Vec<[u32; 3]> = (0..=parts_y)
+                .flat_map(|j| (0..=parts_x).map(move |i| [i, j, k]))
+                .filter(|&place| !self.is_corner_of_whole(place))
+                .collect();
+            if layer.is_empty() {
+                continue;
+            }
             batch.clear();
-            for j in 0..=parts_y {
-                for i in 0..=parts_x {
-                    if !self.is_corner_of_whole([i, j, k]) {
-                        batch.push(self.corner_of_part(suspect, [i, j, k]));
-                    }
-                }
+            for suspect in suspects.iter().filter(|suspect| !suspect.signs.differ()) {
+                layer.iter().for_each(|&place| batch.push(self.corner_of_part(suspect, place)));
             }
             evaluations += batch.len() as u64;
-            let values = batch.evaluate(self.kernel, scratch, 1);
-            signs = signs | values.iter().map(|&value| Signs::of(value)).collect();
-            if signs.differ() {
-                return (true, evaluations);
+            let mut layers = batch.evaluate(self.kernel, scratch, 1).chunks(layer.len());
+            for suspect in suspects.iter_mut().filter(|suspect| !suspect.signs.differ()) {
+                let values = layers.next().unwrap_or_default();
+                suspect.signs = suspect.signs | values.iter().map(|&value| Signs::of(value)).collect();
             }
         }
-        (false, evaluations)
+        evaluations
     }
 
     /// Whether a corner of the parts is one of the whole cell too, whose sign is known.

@@ -8,6 +8,12 @@ use crate::{Hit, Outcome, Ray, Span};
 /// Samples asked for at once. Those behind the first change of sign are wasted, so there are few.
 const BLOCK: usize = 8;
 
+/// How far behind a zero its next sign is looked for first, as a part of the distance between samples: further than
+/// rounding errors reach where F − C crosses zero, nearer than the next root should be.
+const FIRST_LOOK: f64 = 1.0 / 1_048_576.0;
+/// How many times further each look goes where there is no sign.
+const FURTHER: f64 = 16.0;
+
 /// Samples the stretches of a ray in order and halves the first interval whose ends have unlike signs, down to
 /// neighbouring doubles.
 ///
@@ -58,8 +64,8 @@ enum Stage {
     Sampling,
     /// Halving the interval between two samples of unlike sign.
     Halving(Bracket),
-    /// Looking what sign there is behind a zero.
-    Passing(Bracket),
+    /// Looking what sign there is behind the zero at the bracket's end, at this distance.
+    Passing(Bracket, f64),
 }
 
 /// An interval whose ends have unlike signs; the second end may be a zero.
@@ -109,7 +115,7 @@ impl<S: Stretches> Search<S> {
         match self.stage {
             Stage::Sampling => self.ask_for_block(points),
             Stage::Halving(bracket) => bracket.middle().map_or(0, |middle| self.ask_for(points, middle)),
-            Stage::Passing(bracket) => self.ask_for(points, bracket.after.t + bracket.step),
+            Stage::Passing(bracket, distance) => self.ask_for(points, bracket.after.t + distance),
         }
     }
 
@@ -125,19 +131,11 @@ impl<S: Stretches> Search<S> {
             }
             (Stage::Halving(bracket), &[value]) => return self.halve(bracket, value),
             (Stage::Halving(bracket), _) if bracket.after.value == 0.0 => {
-                self.stage = Stage::Passing(bracket);
+                self.stage = Stage::Passing(bracket, bracket.step * FIRST_LOOK);
                 return None;
             }
             (Stage::Halving(bracket), _) => return Some(Outcome::Hit(bracket.hit())),
-            (Stage::Passing(bracket), _) => {
-                let behind: Signs = values.iter().map(|&value| Signs::of(value)).collect();
-                let crossed = !behind.differ() && (bracket.before.signs() | behind).differ();
-                return Some(if crossed {
-                    Outcome::Hit(bracket.hit())
-                } else {
-                    Outcome::Touch(bracket.hit())
-                });
-            }
+            (Stage::Passing(bracket, distance), _) => return self.pass(bracket, distance, values),
         }
         self.read_block()
     }
@@ -208,6 +206,20 @@ impl<S: Stretches> Search<S> {
             bracket.after = middle;
         }
         self.stage = Stage::Halving(bracket);
+        None
+    }
+
+    /// Tells a zero that is crossed from one that is only touched, by the first sign behind it.
+    fn pass(&mut self, bracket: Bracket, distance: f64, values: &[f64]) -> Option<Outcome> {
+        let behind: Signs = values.iter().map(|&value| Signs::of(value)).collect();
+        if behind == Signs::NEGATIVE || behind == Signs::POSITIVE {
+            let crossed = behind != bracket.before.signs();
+            return Some(if crossed { Outcome::Hit(bracket.hit()) } else { Outcome::Touch(bracket.hit()) });
+        }
+        if distance >= bracket.step {
+            return Some(Outcome::Touch(bracket.hit()));
+        }
+        self.stage = Stage::Passing(bracket, (FURTHER * distance).min(bracket.step));
         None
     }
 }

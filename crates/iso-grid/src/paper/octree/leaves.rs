@@ -56,14 +56,15 @@ fn holding(
     signs.learn(blocks, &candidates);
     let mut newest = candidates;
     newest.retain(|&block| signs.at_corners(blocks, block).differ());
-    let mut labelled: PlaceSet = newest.iter().copied().collect();
+    let counts = blocks.counts();
+    let mut labelled: PlaceSet = newest.iter().map(|&block| lattice::index(block, counts)).collect();
     let mut holding = Vec::new();
     while !newest.is_empty() {
         holding.extend_from_slice(&newest);
         let bordering: Vec<_> = newest
             .iter()
-            .flat_map(|&block| lattice::neighbours(block, blocks.counts()))
-            .filter(|&neighbour| labelled.insert(neighbour))
+            .flat_map(|&block| lattice::neighbours(block, counts))
+            .filter(|&neighbour| labelled.insert(lattice::index(neighbour, counts)))
             .collect();
         looked_at += bordering.len() as u64;
         check_count(looked_at)?;
@@ -136,10 +137,12 @@ struct PointSigns<'a> {
 impl PointSigns<'_> {
     /// Evaluates what is not yet known at the corners of some blocks.
     fn learn(&mut self, blocks: &Blocks<'_>, of: &[[usize; 3]]) {
+        let counts = self.lattice.points();
         let mut unknown = Vec::new();
         for corner in of.iter().flat_map(|&block| blocks.corners(block)) {
-            self.known.entry(corner).or_insert_with(|| {
-                unknown.push(corner);
+            let point = lattice::index(corner, counts);
+            self.known.entry(point).or_insert_with(|| {
+                unknown.push(point);
                 Signs::NONE
             });
         }
@@ -150,7 +153,7 @@ impl PointSigns<'_> {
                 || (PointBatch::default(), Scratch::default()),
                 |(batch, scratch), chunk| -> Vec<Signs> {
                     batch.clear();
-                    chunk.iter().for_each(|&place| batch.push(lattice.point(place)));
+                    chunk.iter().for_each(|&point| batch.push(lattice.point(lattice::place(point, counts))));
                     batch.evaluate(kernel, scratch, 1).iter().map(|&value| Signs::of(value)).collect()
                 },
             )
@@ -161,6 +164,7 @@ impl PointSigns<'_> {
 
     /// The signs at a block's corners, which were learnt before.
     fn at_corners(&self, blocks: &Blocks<'_>, block: [usize; 3]) -> Signs {
-        blocks.corners(block).map(|corner| self.known[&corner]).into_iter().collect()
+        let counts = self.lattice.points();
+        blocks.corners(block).map(|corner| self.known[&lattice::index(corner, counts)]).into_iter().collect()
     }
 }
