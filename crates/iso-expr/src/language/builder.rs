@@ -165,12 +165,16 @@ impl Builder {
         let known = |place: usize| self.known[operands[place].index()];
         let value = apply_known(operation, operands, |place| known(place).value);
         let integer = apply_known(operation, operands, |place| known(place).integer);
+        let is_exact = match operation {
+            Operation::Divide => {
+                let divided = (known(0).integer).zip(known(1).integer);
+                divided.is_some_and(|(dividend, divisor)| dividend % divisor == 0.0)
+            }
+            _ => keeps_integers(operation),
+        };
+        let integer = integer.filter(|value| is_exact && is_integer(*value));
         let is_truth = matches!(operation, Operation::Less | Operation::LessOrEqual | Operation::Equal);
-        Known {
-            value,
-            integer: integer.filter(|_| keeps_integers(operation)).filter(|value| is_integer(*value)),
-            is_truth,
-        }
+        Known { value, integer, is_truth }
     }
 }
 

@@ -47,7 +47,8 @@ pub(super) struct Head<'t> {
 pub(super) fn items(text: &str) -> (Vec<Item<'_>>, Vec<Head<'_>>) {
     let mut items = Vec::new();
     let mut heads = Vec::new();
-    for pair in Grammar::parse(Rule::formula, text).expect("the grammar gives every text a meaning") {
+    let mut formula = Grammar::parse(Rule::formula, text).expect("the grammar gives every text a meaning");
+    for pair in formula.next().into_iter().flat_map(|formula| formula.into_inner()) {
         let item = item(&pair);
         items.push(item);
         if matches!(item.kind, Kind::function_head | Kind::value_head) {

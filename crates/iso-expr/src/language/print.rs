@@ -129,3 +129,132 @@ fn tightness(infix: Infix) -> (Precedence, Precedence) {
         _ => (Precedence::Operand, Precedence::Sign),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::ast::{DefinitionId, NamedConstant};
+    use super::super::function::Function;
+    use super::*;
+    use crate::{Axis, Operation};
+
+    /// An expression that is not in a [`Tree`] yet.
+    #[derive(Clone, Debug)]
+    enum Sketch {
+        Leaf(Term),
+        Prefix(Prefix, Box<Sketch>),
+        Infix(Infix, Box<(Sketch, Sketch)>),
+        Call(Function, Vec<Sketch>),
+    }
+
+    impl Sketch {
+        fn draw(&self, tree: &mut Tree) -> TermId {
+            let term = match self {
+                Self::Leaf(term) => term.clone(),
+                Self::Prefix(prefix, operand) => Term::Prefix(*prefix, operand.draw(tree)),
+                Self::Infix(infix, operands) => {
+                    Term::Infix(*infix, operands.0.draw(tree), operands.1.draw(tree))
+                }
+                Self::Call(function, arguments) => {
+                    Term::Call(*function, arguments.iter().map(|argument| argument.draw(tree)).collect())
+                }
+            };
+            tree.push(term)
+        }
+    }
+
+    const PREFIXES: [Prefix; 2] = [Prefix::Negate, Prefix::Not];
+
+    const INFIXES: [Infix; 13] = [
+        Infix::Or,
+        Infix::And,
+        Infix::Less,
+        Infix::LessOrEqual,
+        Infix::Greater,
+        Infix::GreaterOrEqual,
+        Infix::Equal,
+        Infix::NotEqual,
+        Infix::Add,
+        Infix::Subtract,
+        Infix::Multiply,
+        Infix::Divide,
+        Infix::Power,
+    ];
+
+    /// Functions with how many arguments they are given.
+    const FUNCTIONS: [(Function, usize); 6] = [
+        (Function::Operation(Operation::Sin), 1),
+        (Function::Operation(Operation::Select), 3),
+        (Function::Fold(Operation::Minimum), 2),
+        (Function::Fold(Operation::Maximum), 4),
+        (Function::Prelude(DefinitionId(0)), 1),
+        (Function::Defined(DefinitionId(1)), 2),
+    ];
+
+    /// Expressions in which `a` stands for definition 0 and `f` for definition 1.
+    fn expressions(uses_definitions: bool) -> impl Strategy<Value = Tree> {
+        let numbers = prop_oneof![(0u8..9).prop_map(f64::from), any::<f64>().prop_map(f64::abs)];
+        let numbers = numbers.prop_filter("literals are finite", |value| value.is_finite());
+        let leaf = prop_oneof![
+            numbers.prop_map(Term::Number),
+            proptest::sample::select(&Axis::ALL[..]).prop_map(Term::Variable),
+            proptest::sample::select(&NamedConstant::ALL[..]).prop_map(Term::Constant),
+            Just(if uses_definitions { Term::Value(DefinitionId(0)) } else { Term::Number(0.5) }),
+        ];
+        let functions = &FUNCTIONS[..FUNCTIONS.len() - usize::from(!uses_definitions)];
+        let sketch = leaf.prop_map(Sketch::Leaf).prop_recursive(6, 48, 4, move |inner| {
+            let pair = (inner.clone(), inner.clone());
+            let arguments = proptest::collection::vec(inner.clone(), 4);
+            prop_oneof![
+                (proptest::sample::select(&PREFIXES[..]), inner)
+                    .prop_map(|(prefix, it)| Sketch::Prefix(prefix, Box::new(it))),
+                (proptest::sample::select(&INFIXES[..]), pair)
+                    .prop_map(|(infix, it)| Sketch::Infix(infix, Box::new(it))),
+                (proptest::sample::select(functions), arguments)
+                    .prop_map(|((function, count), it)| Sketch::Call(function, it[..count].to_vec())),
+            ]
+        });
+        sketch.prop_map(|sketch| {
+            let mut tree = Tree::default();
+            sketch.draw(&mut tree);
+            tree
+        })
+    }
+
+    fn definition(name: &str, parameters: &[&str], body: Tree) -> Definition {
+        let parameters = parameters.iter().map(|&name| name.to_owned()).collect();
+        Definition { name: name.to_owned(), parameters, body, is_constant: false, span: 0..0 }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
+
+        #[test]
+        fn canonical_text_parses_to_the_same_tree(
+            value in expressions(false),
+            body in expressions(false),
+            left in expressions(true),
+            right in proptest::option::of(expressions(true)),
+        ) {
+            let definitions = vec![definition("a", &[], value), definition("f", &["u", "x"], with_parameters(body))];
+            let ast = Ast { definitions, left, right };
+            let text = ast.to_string();
+            let again = Ast::parse(&text).map_err(|error| TestCaseError::fail(format!("{text}: {error}")))?;
+            prop_assert_eq!(&again, &ast, "{}", text);
+        }
+    }
+
+    /// The tree with the parameter x in place of the coordinate, which it hides.
+    fn with_parameters(tree: Tree) -> Tree {
+        let mut copy = Tree::default();
+        for term in tree.terms() {
+            copy.push(match term {
+                Term::Variable(Axis::X) => Term::Parameter(1),
+                Term::Variable(Axis::Y) => Term::Parameter(0),
+                term => term.clone(),
+            });
+        }
+        copy
+    }
+}
