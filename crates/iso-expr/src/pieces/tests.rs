@@ -87,8 +87,7 @@ fn an_angle_has_a_piece_on_either_side_of_its_cut() {
 fn choices_by_one_condition_go_together() {
     // if(x < 0, 1, 2)·if(x < 0, 10, 20) is 10 or 40, never 20.
     let product = |program: &mut Program, x| {
-        let [zero, one, two, ten, twenty] =
-            [0.0, 1.0, 2.0, 10.0, 20.0].map(|value| program.literal(value));
+        let [zero, one, two, ten, twenty] = [0.0, 1.0, 2.0, 10.0, 20.0].map(|value| program.literal(value));
         let negative = program.apply(Operation::Less, &[x, zero]);
         let small = program.apply(Operation::Select, &[negative, one, two]);
         let large = program.apply(Operation::Select, &[negative, ten, twenty]);
@@ -170,10 +169,16 @@ fn the_value_at_each_point_of_a_box_lies_in_a_piece() {
             if decoration[0] >= Decoration::Defined {
                 let value = Interval { lo: lo[0], hi: hi[0] };
                 let held = pieces.iter().any(|piece| !piece.intersection(value).is_empty());
-                assert!(held, "program {number} at {point:?} is in {value}, its pieces are {pieces:?}\n{program}");
+                assert!(
+                    held,
+                    "program {number} at {point:?} is in {value}, its pieces are {pieces:?}\n{program}"
+                );
                 compared += 1;
             }
         }
     }
-    assert!(compared > 20_000 && branched > 500, "{compared} values and {branched} branched programs compared");
+    assert!(
+        compared > 20_000 && branched > 500,
+        "{compared} values and {branched} branched programs compared"
+    );
 }

@@ -3,7 +3,7 @@
 use iso_expr::Interval;
 
 use super::line::Line;
-use super::side::{Side, side};
+use super::side::side;
 use crate::Span;
 
 /// More steps than bisection alone would need to pass all doubles.
@@ -16,19 +16,30 @@ impl Line<'_> {
         let mut root = stretch;
         for _ in 0..STEPS {
             let width = root.end - root.start;
-            if width <= tolerance {
-                break;
-            }
             let slope = self.course(root).slope.interval;
-            let middle = root.start + 0.5 * width;
-            let value = self.value_at(middle);
-            root = newton_step(root, middle, value, slope);
+            root = self.newton_step(root, slope);
             let stalled = root.end - root.start > 0.75 * width;
-            if stalled {
-                break;
+            if stalled || root.end - root.start <= tolerance {
+                // The slope of a narrow stretch is all but a number: one more value gives all the digits there are.
+                return self.newton_step(root, slope);
             }
         }
         root
+    }
+
+    /// The part of `root` that may hold the zero of F, which is monotone there with a derivative in `slope`.
+    fn newton_step(&mut self, root: Span, slope: Interval) -> Span {
+        let middle = root.start + 0.5 * (root.end - root.start);
+        let value = self.value_at(middle);
+        let Some(direction) = side(slope) else { return root };
+        let newton = Interval::point(middle).minus(value.over(slope));
+        let mut next = Span { start: root.start.max(newton.lo), end: root.end.min(newton.hi) };
+        match side(value) {
+            Some(height) if height == direction => next.end = next.end.min(middle),
+            Some(_) => next.start = next.start.max(middle),
+            None => {}
+        }
+        if next.start <= next.end { next } else { root }
     }
 
     /// A point of `stretch` where the slope, which has unlike signs at its ends, is zero or lost in rounding.
@@ -45,19 +56,4 @@ impl Line<'_> {
             if here == before { start = middle } else { end = middle }
         }
     }
-}
-
-/// The part of `root` that may hold the zero of a monotone function: `value` encloses it at `middle`, `slope` its
-/// derivative over all of `root`.
-fn newton_step(root: Span, middle: f64, value: Interval, slope: Interval) -> Span {
-    let Some(direction) = side(slope) else { return root };
-    let newton = Interval::point(middle).minus(value.over(slope));
-    let mut next = Span { start: root.start.max(newton.lo), end: root.end.min(newton.hi) };
-    match side(value) {
-        Some(Side::Above) if direction == Side::Above => next.end = next.end.min(middle),
-        Some(Side::Below) if direction == Side::Below => next.end = next.end.min(middle),
-        Some(_) => next.start = next.start.max(middle),
-        None => {}
-    }
-    if next.start <= next.end { next } else { root }
 }

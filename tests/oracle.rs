@@ -1,0 +1,246 @@
+//! The certified method against rays that an independent program decided with ball arithmetic.
+
+mod scenes;
+
+use std::fmt;
+use std::sync::Arc;
+
+use glam::DVec3;
+use iso_expr::engine::{Boxes, Enclosures};
+use iso_expr::{Decoration, Engine, Interpreter, Interval};
+use iso_grid::{Certified, Hit, Outcome, Ray, Surface, Tracer, Workspace, normals};
+use scenes::{Scene, Status, Verdict};
+
+/// Rays that end as `touch` or `undecided` though the independent program, with its 256 bits, says more.
+struct Exception {
+    scene: &'static str,
+    touches: usize,
+    undecided: usize,
+    reason: &'static str,
+}
+
+const EXCEPTIONS: &[Exception] = &[
+    Exception {
+        scene: "sphere_pow5",
+        touches: 132,
+        undecided: 0,
+        reason: "the root is of order five: its sign changes, but its slope does not exclude zero",
+    },
+    Exception {
+        scene: "overflow_diff",
+        touches: 0,
+        undecided: 137,
+        reason: "both exponentials overflow in front of the surface, where their difference may be any double",
+    },
+];
+
+#[test]
+fn interpreter_proves_what_the_oracle_says() {
+    compare(Arc::new(Interpreter));
+}
+
+/// Traces every ray of every scene. All that is wrong is told at once.
+fn compare(engine: Arc<dyn Engine>) {
+    let (mut wrong, mut classic_rays, mut classic_undecided) = (Vec::new(), 0, 0);
+    for scene in scenes::all() {
+        let comparison = Comparison::of(&scene, Arc::clone(&engine));
+        println!("{comparison}");
+        if scene.tags.iter().any(|tag| tag == "classic") {
+            classic_rays += comparison.rays;
+            classic_undecided += comparison.undecided;
+        }
+        let (touches, undecided, reason) = EXCEPTIONS
+            .iter()
+            .find(|exception| exception.scene == scene.name)
+            .map_or((0, 0, "all can be decided"), |exception| {
+                (exception.touches, exception.undecided, exception.reason)
+            });
+        if comparison.touches != touches || comparison.undecided != undecided {
+            wrong.push(format!(
+                "{}: {} touches and {} undecided, expected {touches} and {undecided} ({reason})",
+                scene.name, comparison.touches, comparison.undecided
+            ));
+        }
+        wrong.extend(comparison.contradictions.into_iter().map(|text| format!("{}: {text}", scene.name)));
+    }
+    assert!(wrong.is_empty(), "{} engine:\n{}", engine.name(), wrong.join("\n"));
+    assert!(
+        classic_undecided * 1000 <= classic_rays,
+        "{classic_undecided} of {classic_rays} classic rays undecided"
+    );
+}
+
+/// One scene's rays, compared.
+struct Comparison {
+    name: String,
+    rays: usize,
+    /// Rays said to touch that the oracle says hit or miss.
+    touches: usize,
+    /// Undecided rays that the oracle decided.
+    undecided: usize,
+    /// The largest |t − t*| / max(1, |t*|).
+    error: f64,
+    /// The widest bracket of a hit relative to max(1, |t|).
+    width: f64,
+    /// Boxes enclosed.
+    boxes: u64,
+    contradictions: Vec<String>,
+}
+
+impl Comparison {
+    fn of(scene: &Scene, engine: Arc<dyn Engine>) -> Self {
+        let surface = scene.surface(engine);
+        let tracer = Certified::new(&surface, scene.region()).expect("the scenes compile");
+        let verdicts = scene.verdicts();
+        let rays: Vec<Ray> = verdicts.iter().map(|verdict| verdict.ray).collect();
+        let mut workspace = Workspace::default();
+        let mut outcomes = vec![Outcome::Miss; rays.len()];
+        tracer.trace(&mut workspace, &rays, &mut outcomes);
+        let mut found = vec![DVec3::NAN; rays.len()];
+        normals(&surface, &mut workspace, &rays, &outcomes, &mut found).expect("the scenes compile");
+
+        let mut comparison = Self {
+            name: scene.name.clone(),
+            rays: rays.len(),
+            touches: 0,
+            undecided: 0,
+            error: 0.0,
+            width: 0.0,
+            boxes: workspace.counters.box_evaluations,
+            contradictions: Vec::new(),
+        };
+        for (row, verdict) in verdicts.iter().enumerate() {
+            let rounding = || Rounding::at(&surface, verdict);
+            if let Err(contradiction) = comparison.check(verdict, outcomes[row], found[row], rounding) {
+                comparison.contradictions.push(format!("row {row}: {contradiction}"));
+            }
+        }
+        comparison
+    }
+
+    fn check(
+        &mut self,
+        verdict: &Verdict,
+        outcome: Outcome,
+        normal: DVec3,
+        rounding: impl Fn() -> Rounding,
+    ) -> Result<(), String> {
+        let said =
+            format!("the oracle says {:?} at {}, but the ray ends as {outcome:?}", verdict.status, verdict.t);
+        let unless = |holds: bool| if holds { Ok(()) } else { Err(said.clone()) };
+        match (verdict.status, outcome) {
+            (Status::Hit, Outcome::Hit(hit)) => self.check_hit(verdict, hit, normal, &rounding()),
+            (Status::Hit, Outcome::Touch(Hit { bracket, .. })) => {
+                self.touches += 1;
+                unless(verdict.overlaps(bracket))
+            }
+            (Status::Hit, Outcome::Undecided(stretch)) => {
+                self.undecided += 1;
+                unless(stretch.start <= verdict.place.end)
+            }
+            (Status::Touch, Outcome::Touch(Hit { bracket, .. })) => unless(verdict.overlaps(bracket)),
+            (Status::Miss, Outcome::Miss) | (Status::Undecided, Outcome::Undecided(_)) => Ok(()),
+            (Status::Miss, Outcome::Touch(_)) => {
+                self.touches += 1;
+                Ok(())
+            }
+            (Status::Miss, Outcome::Undecided(_)) => {
+                self.undecided += 1;
+                Ok(())
+            }
+            // Where the oracle stopped, nothing before is a root.
+            (Status::Undecided, Outcome::Hit(Hit { bracket, .. }) | Outcome::Touch(Hit { bracket, .. })) => {
+                unless(bracket.end >= verdict.place.start)
+            }
+            (Status::Undecided, Outcome::Miss) => Ok(()),
+            (Status::Hit | Status::Touch, _) | (Status::Miss, Outcome::Hit(_)) => Err(said),
+        }
+    }
+
+    fn check_hit(
+        &mut self,
+        verdict: &Verdict,
+        hit: Hit,
+        normal: DVec3,
+        rounding: &Rounding,
+    ) -> Result<(), String> {
+        let unit = verdict.t.abs().max(1.0);
+        let (error, width) = ((hit.t - verdict.t).abs(), hit.bracket.end - hit.bracket.start);
+        (self.error, self.width) = (self.error.max(error / unit), self.width.max(width / unit));
+        if !(hit.bracket.start <= verdict.t && verdict.t <= hit.bracket.end) {
+            return Err(format!("the enclosure {:?} does not hold t = {}", hit.bracket, verdict.t));
+        }
+        if error > (1e-11 * unit).max(rounding.of_t) {
+            return Err(format!("t = {} is {error:e} off, rounding explains {:e}", hit.t, rounding.of_t));
+        }
+        if width > (1e-12 * unit).max(2.0 * rounding.of_t) {
+            return Err(format!(
+                "{:?} is {width:e} wide, rounding explains {:e}",
+                hit.bracket, rounding.of_t
+            ));
+        }
+        if !verdict.normal.is_nan() {
+            let angle = normal.cross(verdict.normal).length().atan2(normal.dot(verdict.normal));
+            let angle = if angle.is_nan() { f64::INFINITY } else { angle };
+            if angle > f64::max(1e-6, rounding.of_normal) {
+                return Err(format!(
+                    "the normal {normal} is {angle:e} off, rounding explains {:e}",
+                    rounding.of_normal
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Comparison {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, rays, touches, undecided, error, width, boxes, contradictions } = self;
+        write!(
+            f,
+            "{name:20} {rays} rays, {touches} touches, {undecided} undecided, {} contradictions, ",
+            contradictions.len()
+        )?;
+        write!(f, "error {error:.1e}, width {width:.1e}, {:.0} boxes a ray", *boxes as f64 / *rays as f64)
+    }
+}
+
+/// How far rounding alone may move a root and its normal.
+struct Rounding {
+    /// The rounding error of F at the root over its slope along the ray.
+    of_t: f64,
+    /// The rounding error of the gradient over its length.
+    of_normal: f64,
+}
+
+impl Rounding {
+    fn at(surface: &Surface, verdict: &Verdict) -> Self {
+        let [value, gradient @ ..] = enclosures(surface, verdict, 0.0);
+        let widths = DVec3::from_array(gradient.map(Interval::width));
+        let middle = DVec3::from_array(gradient.map(Interval::midpoint));
+        let slope = middle.dot(verdict.ray.direction).abs() - widths.dot(verdict.ray.direction.abs());
+        let of_t = value.width() / slope.max(0.0);
+        let [_, gradient @ ..] = enclosures(surface, verdict, of_t);
+        let widths = DVec3::from_array(gradient.map(Interval::width));
+        let scale = middle.abs().max_element();
+        Self { of_t, of_normal: (widths / scale).length() / (middle / scale).length() }
+    }
+}
+
+/// Encloses F and its gradient at the points of the ray that are no further from the root than `slack`.
+fn enclosures(surface: &Surface, verdict: &Verdict, slack: f64) -> [Interval; 4] {
+    let ends = [0, 1, 2].map(|axis| {
+        let (origin, direction) = (verdict.ray.origin[axis], verdict.ray.direction[axis]);
+        let (point, slack) = (origin + verdict.t * direction, slack * direction.abs());
+        let slack = slack + f64::EPSILON * (point.abs() + (verdict.t * direction).abs());
+        (point - slack, point + slack)
+    });
+    let (lo, hi) = (ends.map(|(lo, _)| [lo]), ends.map(|(_, hi)| [hi]));
+    let (mut low, mut high, mut decoration) = ([0.0; 4], [0.0; 4], [Decoration::Trivial; 4]);
+    surface.gradient_enclosures().expect("the scenes compile").evaluate(
+        &mut Workspace::default().scratch,
+        Boxes { lo: lo.each_ref().map(|end| &end[..]), hi: hi.each_ref().map(|end| &end[..]) },
+        Enclosures { lo: &mut low, hi: &mut high, decoration: &mut decoration },
+    );
+    std::array::from_fn(|output| Interval { lo: low[output], hi: high[output] })
+}
