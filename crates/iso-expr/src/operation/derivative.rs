@@ -93,23 +93,18 @@ impl Chain<'_> {
         if self.program.node(derivative) == Node::Constant(Constant::exact(1.0)) {
             return Some(factor);
         }
-        let (constant, rest) = match self.program.node(derivative) {
-            Node::Constant(_) => (derivative, None),
+        Some(match self.program.node(derivative) {
+            Node::Constant(_) => self.apply(Operation::Multiply, &[derivative, factor]),
             Node::Apply(Operation::Multiply, [constant, rest, _]) if self.is_constant(constant) => {
-                (constant, Some(rest))
+                if self.is_constant(factor) {
+                    let constant = self.program.product_of_constants(factor, constant);
+                    self.apply(Operation::Multiply, &[constant, rest])
+                } else {
+                    let variable = self.apply(Operation::Multiply, &[factor, rest]);
+                    self.apply(Operation::Multiply, &[constant, variable])
+                }
             }
-            _ => return Some(self.apply(Operation::Multiply, &[factor, derivative])),
-        };
-        Some(match rest {
-            Some(rest) if self.is_constant(factor) => {
-                let constant = self.apply(Operation::Multiply, &[factor, constant]);
-                self.apply(Operation::Multiply, &[constant, rest])
-            }
-            Some(rest) => {
-                let variable = self.apply(Operation::Multiply, &[factor, rest]);
-                self.apply(Operation::Multiply, &[constant, variable])
-            }
-            None => self.apply(Operation::Multiply, &[constant, factor]),
+            _ => self.apply(Operation::Multiply, &[factor, derivative]),
         })
     }
 

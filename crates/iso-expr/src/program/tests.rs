@@ -1,4 +1,7 @@
+use super::reference::assert_same;
 use super::*;
+use crate::Ast;
+use crate::random::Random;
 
 fn polynomial() -> Program {
     let mut program = Program::new();
@@ -26,6 +29,46 @@ fn substitution_leaves_no_node_that_nothing_needs() {
         [x, t, z]
     });
     assert_eq!(on_a_line.to_string(), "v1 = x + 3\nv2 = v1 ^ 3\nv3 = v2 * x\nF = v3\n");
+}
+
+#[test]
+fn a_substituted_program_has_the_values_of_the_composition() {
+    let mut random = Random::new(1);
+    for _ in 0..500 {
+        let operations = random.below(20);
+        let outer = random.program(operations);
+        let inner = [(); 3].map(|()| random.program(5));
+        let composition = outer.substituted(|program| {
+            let variables = Axis::ALL.map(|axis| program.variable(axis));
+            inner.each_ref().map(|inner| program.import(inner, variables)[0])
+        });
+        for _ in 0..10 {
+            let point = [(); 3].map(|()| random.double());
+            let between = inner.each_ref().map(|inner| inner.evaluate(point)[0]);
+            let context = || format!("at {point:?} of\n{composition}");
+            assert_same(composition.evaluate(point)[0], outer.evaluate(between)[0], context);
+        }
+    }
+}
+
+#[test]
+fn constants_of_a_derivative_fold_into_one() {
+    let program =
+        Ast::parse("3 * (5 * (y + (7x^3 + 1)))").unwrap().lower(&[]).unwrap().program().with_gradient();
+    let gradient = program.simplified();
+    let mut along_x = gradient.clone();
+    along_x.set_outputs(vec![gradient.outputs()[1]]);
+    assert_eq!(along_x.pruned().to_string(), "v1 = x ^ 2\nv2 = 315 * v1\nF = v2\n");
+    assert_eq!(gradient.node(gradient.outputs()[2]), Node::Constant(Constant::exact(15.0)));
+}
+
+#[test]
+fn a_listing_shows_every_kind_of_operation_as_formulas_do() {
+    let formula = "if(x < pi, -y, log2(max(z, 1e-9)) / 3)";
+    let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().program().simplified();
+    let expected =
+        "v1 = x < pi\nv2 = -y\nv3 = max(z, 1e-9)\nv4 = log2(v3)\nv5 = v4 / 3\nv6 = if(v1, v2, v5)\nF = v6\n";
+    assert_eq!(program.to_string(), expected);
 }
 
 #[test]

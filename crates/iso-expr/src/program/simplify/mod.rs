@@ -24,6 +24,14 @@ impl Program {
         });
         program.pruned()
     }
+
+    /// The product of two constants, as a constant where it is finite.
+    pub(crate) fn product_of_constants(&mut self, a: NodeId, b: NodeId) -> NodeId {
+        match fold::folded(self, Operation::Multiply, &[a, b]) {
+            Some(product) => self.constant(product),
+            None => self.apply(Operation::Multiply, &[a, b]),
+        }
+    }
 }
 
 /// Adds operations to a program all of whose operations are simplified.
