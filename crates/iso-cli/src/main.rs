@@ -1,2 +1,49 @@
-//! The program `iso`.
-fn main() {}
+//! The program `iso`: see F(x, y, z) = C.
+//!
+//! Raw flags ([`flags`]) become checked requests, and requests become results ([`commands`]). Whatever goes wrong comes up as
+//! one [`failure::Failure`], which [`report`] draws.
+
+mod camera;
+mod clock;
+mod commands;
+mod engine;
+mod failure;
+mod flags;
+mod formula;
+mod method;
+mod output;
+mod pictures;
+mod progress;
+mod report;
+mod summary;
+mod table;
+mod values;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use failure::Failure;
+use flags::{Command, Flags};
+
+fn main() -> ExitCode {
+    match run(Flags::parse().command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) if failure.is_closed_pipe() => ExitCode::SUCCESS,
+        Err(failure) => {
+            report::print(&failure);
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+fn run(command: Command) -> Result<(), Failure> {
+    match command {
+        Command::Render(flags) => commands::render::run(*flags),
+        Command::Eval(flags) => commands::eval::run(flags),
+        Command::Trace(flags) => commands::trace::run(flags),
+        Command::Explain(flags) => commands::explain::run(flags),
+        Command::Bench(flags) => commands::bench::run(flags),
+        Command::Completions { shell } => commands::completions::run(shell),
+    }
+}

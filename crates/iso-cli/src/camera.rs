@@ -1,0 +1,38 @@
+//! From the camera's flags to a view and a projection.
+
+use glam::DVec3;
+use iso_grid::Region;
+use iso_render::{Camera, CameraError, Projection, Size, View};
+
+use crate::flags::CameraFlags;
+
+/// The camera that `flags` describe, for pictures of `size` that look into `region`.
+pub(crate) fn camera(flags: &CameraFlags, region: &Region, size: Size) -> Result<Camera, CameraError> {
+    Camera::new(view(flags, region), projection(flags), region, size)
+}
+
+fn view(flags: &CameraFlags, region: &Region) -> View {
+    let View::Orbit { yaw, pitch, .. } = View::DEFAULT else {
+        unreachable!("cameras orbit the region by default");
+    };
+    match flags.eye {
+        Some(eye) => View::LookAt {
+            eye,
+            target: flags.target.unwrap_or(region.center()),
+            up: flags.up.unwrap_or(DVec3::Z),
+        },
+        None => View::Orbit {
+            yaw: flags.yaw.unwrap_or(yaw),
+            pitch: flags.pitch.unwrap_or(pitch),
+            distance: flags.distance,
+        },
+    }
+}
+
+fn projection(flags: &CameraFlags) -> Projection {
+    match (flags.ortho, flags.fov) {
+        (true, _) => Projection::Orthographic { view_width: flags.view_width },
+        (false, Some(fov)) => Projection::Perspective { fov },
+        (false, None) => Projection::DEFAULT,
+    }
+}

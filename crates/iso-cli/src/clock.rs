@@ -1,0 +1,83 @@
+//! The one place that takes times.
+
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+
+/// Runs `work` and says how long it took on the clock on the wall.
+pub(crate) fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
+    let start = Instant::now();
+    let result = work();
+    (result, start.elapsed())
+}
+
+/// A duration in milliseconds.
+pub(crate) fn milliseconds(duration: Duration) -> f64 {
+    1e3 * duration.as_secs_f64()
+}
+
+/// Milliseconds that the phases of a picture took.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(crate) struct Phases {
+    /// From text to programs: parsing, lowering, differentiating, simplifying.
+    pub(crate) parse: f64,
+    /// From programs to kernels.
+    pub(crate) compile: f64,
+    /// What the method prepares before the first ray.
+    pub(crate) preprocess: f64,
+    /// Following rays.
+    pub(crate) trace: f64,
+    /// Normals and colours.
+    pub(crate) shade: f64,
+    /// From colours to files.
+    pub(crate) encode: f64,
+}
+
+impl Phases {
+    /// All phases together.
+    pub(crate) fn total(&self) -> f64 {
+        self.parse + self.compile + self.preprocess + self.trace + self.shade + self.encode
+    }
+}
+
+/// Runs `work` and adds its milliseconds to `phase`.
+pub(crate) fn add_to<T>(phase: &mut f64, work: impl FnOnce() -> T) -> T {
+    let (result, duration) = timed(work);
+    *phase += milliseconds(duration);
+    result
+}
+
+/// How measurements of the same thing spread.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Spread {
+    /// The middle measurement.
+    pub(crate) median: f64,
+    /// The least measurement.
+    pub(crate) least: f64,
+    /// The greatest measurement.
+    pub(crate) greatest: f64,
+}
+
+impl Spread {
+    /// The spread of at least one measurement.
+    pub(crate) fn of(measurements: &[f64]) -> Self {
+        let mut sorted = measurements.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let (least, greatest) = (sorted[0], sorted[sorted.len() - 1]);
+        let (below, above) = (sorted[(sorted.len() - 1) / 2], sorted[sorted.len() / 2]);
+        Self { median: 0.5 * (below + above), least, greatest }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_spread_orders_its_measurements() {
+        let odd = Spread::of(&[3.0, 1.0, 2.0]);
+        assert_eq!((odd.least, odd.median, odd.greatest), (1.0, 2.0, 3.0));
+        let even = Spread::of(&[4.0, 1.0, 3.0, 2.0]);
+        assert_eq!((even.least, even.median, even.greatest), (1.0, 2.5, 4.0));
+    }
+}

@@ -1,0 +1,278 @@
+//! `iso bench`: the interpreter against native code.
+
+use std::hint::black_box;
+use std::io::{self, Write};
+use std::sync::Arc;
+use std::time::Duration;
+
+use glam::DVec3;
+use iso_expr::engine::Points;
+use iso_expr::{CompileError, Engine, Scratch};
+use iso_grid::{Region, Surface};
+use iso_render::{Camera, Layers, Projection, Scene, Shading, Size, View, render};
+use serde::Serialize;
+
+use crate::clock::{Spread, milliseconds, timed};
+use crate::engine::{engine, threads};
+use crate::failure::Failure;
+use crate::flags::{BenchFlags, EngineName};
+use crate::formula::{Programs, minus_level, understand};
+use crate::method::Method;
+use crate::output::to_standard_output;
+
+/// Points at which the formula is evaluated.
+const POINTS: usize = 4096;
+/// Evaluations are repeated until they take about this long.
+const LONG_ENOUGH: Duration = Duration::from_millis(5);
+
+/// Measures both engines.
+pub(crate) fn run(flags: BenchFlags) -> Result<(), Failure> {
+    let formula = understand(&flags.formula)?;
+    let bench = Bench {
+        programs: Programs::new(&minus_level(&formula, flags.level.level)?),
+        method: Method::resolve(&flags.method)?,
+        region: flags.method.region,
+        size: flags.measurement.size,
+        points: spread_points(&flags.method.region),
+    };
+    let runs = flags.measurement.runs.get() as usize;
+    let report = threads(&flags.threads)?.install(|| bench.report(runs))?;
+    to_standard_output(|writer| match flags.measurement.json {
+        true => {
+            serde_json::to_writer_pretty(&mut *writer, &report)?;
+            writeln!(writer)
+        }
+        false => report.write(writer),
+    })
+}
+
+/// What is measured.
+struct Bench {
+    programs: Programs,
+    method: Method,
+    region: Region,
+    size: Size,
+    points: [Vec<f64>; 3],
+}
+
+/// One round of measurements of an engine.
+#[derive(Clone, Copy, Debug, Default)]
+struct Round {
+    point_nanoseconds: f64,
+    batch_nanoseconds: f64,
+    compile_milliseconds: f64,
+    picture_milliseconds: f64,
+}
+
+impl Bench {
+    fn report(&self, runs: usize) -> Result<Report, Failure> {
+        let engines = [engine(EngineName::Interp)?, engine(EngineName::Jit)?];
+        // A round that does not count fills caches and wakes the processor.
+        for engine in &engines {
+            self.round(engine)?;
+        }
+        let mut rounds = [Vec::new(), Vec::new()];
+        for _ in 0..runs {
+            for (engine, rounds) in engines.iter().zip(&mut rounds) {
+                rounds.push(self.round(engine)?);
+            }
+        }
+        let [interpreter, native] = rounds.map(|rounds| Measured::of(&rounds));
+        let [width, height] = [self.size.width(), self.size.height()];
+        Ok(Report {
+            operations: self.programs.value.operations(),
+            method: self.method.name(),
+            width,
+            height,
+            runs,
+            gain: Gain::of(&interpreter, &native),
+            break_even_pixels: break_even(&interpreter, &native, self.size),
+            interpreter,
+            native,
+        })
+    }
+
+    fn round(&self, engine: &Arc<dyn Engine>) -> Result<Round, Failure> {
+        let point_nanoseconds = self.point_by_point(engine.as_ref())?;
+        let batch_nanoseconds = self.in_batches(engine.as_ref())?;
+        let (compile, picture) = self.picture(engine)?;
+        Ok(Round {
+            point_nanoseconds,
+            batch_nanoseconds,
+            compile_milliseconds: milliseconds(compile),
+            picture_milliseconds: milliseconds(picture),
+        })
+    }
+
+    /// Nanoseconds of one evaluation when each point is asked for by itself.
+    fn point_by_point(&self, engine: &dyn Engine) -> Result<f64, CompileError> {
+        let kernel = engine.point(&self.programs.value)?;
+        let (mut scratch, mut value) = (Scratch::default(), [0.0]);
+        let [x, y, z] = &self.points;
+        Ok(nanoseconds_each(|| {
+            for ((&x, &y), &z) in x.iter().zip(y).zip(z) {
+                kernel.evaluate(&mut scratch, x, y, z, &mut value);
+                black_box(&mut value);
+            }
+        }))
+    }
+
+    /// Nanoseconds of one evaluation when all points are asked for together.
+    fn in_batches(&self, engine: &dyn Engine) -> Result<f64, CompileError> {
+        let kernel = engine.batch(&self.programs.value)?;
+        let (mut scratch, mut values) = (Scratch::default(), vec![0.0; POINTS]);
+        let [x, y, z] = &self.points;
+        Ok(nanoseconds_each(|| {
+            kernel.evaluate(&mut scratch, Points { x, y, z }, &mut values);
+            black_box(&mut values);
+        }))
+    }
+
+    /// The times of compiling a picture's kernels, and of everything else up to its colours.
+    fn picture(&self, engine: &Arc<dyn Engine>) -> Result<(Duration, Duration), Failure> {
+        let Programs { value, value_and_gradient } = self.programs.clone();
+        let surface = Surface::new(Arc::clone(engine), value, value_and_gradient);
+        let (compiled, compile) = timed(|| self.method.compile(&surface));
+        compiled?;
+        let (drawn, picture) = timed(|| {
+            let tracer = self.method.prepare(&surface, self.region)?;
+            let camera = Camera::new(View::DEFAULT, Projection::DEFAULT, &self.region, self.size)?;
+            let shading = Shading::new(&camera, false);
+            let scene =
+                Scene { surface: &surface, tracer: tracer.as_ref(), camera: &camera, shading: &shading };
+            black_box(render(&scene, self.size, Layers::COLOR, &|_, _| ())?);
+            Ok::<(), Failure>(())
+        });
+        drawn?;
+        Ok((compile, picture))
+    }
+}
+
+/// Nanoseconds of one of the `POINTS` evaluations that `work` does.
+fn nanoseconds_each(mut work: impl FnMut()) -> f64 {
+    let ((), once) = timed(&mut work);
+    let repeats = (LONG_ENOUGH.as_secs_f64() / once.as_secs_f64().max(1e-9)).clamp(1.0, 1e4) as u32;
+    let ((), all) = timed(|| (0..repeats).for_each(|_| work()));
+    1e9 * all.as_secs_f64() / (f64::from(repeats) * POINTS as f64)
+}
+
+/// Points spread evenly over the region: the additive recurrence of Roberts (2018), whose steps are powers of the root
+/// of x⁴ = x + 1.
+fn spread_points(region: &Region) -> [Vec<f64>; 3] {
+    const ROOT: f64 = 1.220_744_084_605_759_5;
+    let steps = DVec3::new(ROOT.powi(-1), ROOT.powi(-2), ROOT.powi(-3));
+    let point = |index: usize| region.min() + region.extent() * (0.5 + index as f64 * steps).fract();
+    let points: Vec<DVec3> = (0..POINTS).map(point).collect();
+    [0, 1, 2].map(|axis| points.iter().map(|point| point[axis]).collect())
+}
+
+/// What was measured of an engine.
+#[derive(Debug, Serialize)]
+struct Measured {
+    /// One evaluation, each point asked for by itself.
+    point_nanoseconds: Spread,
+    /// One evaluation, all points asked for together.
+    batch_nanoseconds: Spread,
+    /// Compiling the kernels of a picture.
+    compile_milliseconds: Spread,
+    /// A picture from preprocessing to colours, without compiling.
+    picture_milliseconds: Spread,
+    /// The same with compiling.
+    picture_and_compile_milliseconds: Spread,
+}
+
+impl Measured {
+    fn of(rounds: &[Round]) -> Self {
+        let spread = |number: fn(&Round) -> f64| Spread::of(&rounds.iter().map(number).collect::<Vec<_>>());
+        Self {
+            point_nanoseconds: spread(|round| round.point_nanoseconds),
+            batch_nanoseconds: spread(|round| round.batch_nanoseconds),
+            compile_milliseconds: spread(|round| round.compile_milliseconds),
+            picture_milliseconds: spread(|round| round.picture_milliseconds),
+            picture_and_compile_milliseconds: spread(|round| {
+                round.picture_milliseconds + round.compile_milliseconds
+            }),
+        }
+    }
+}
+
+/// How many times faster native code is, by medians.
+#[derive(Debug, Serialize)]
+struct Gain {
+    point: f64,
+    batch: f64,
+    picture: f64,
+    picture_and_compile: f64,
+}
+
+impl Gain {
+    fn of(interpreter: &Measured, native: &Measured) -> Self {
+        let gain = |spread: fn(&Measured) -> &Spread| spread(interpreter).median / spread(native).median;
+        Self {
+            point: gain(|measured| &measured.point_nanoseconds),
+            batch: gain(|measured| &measured.batch_nanoseconds),
+            picture: gain(|measured| &measured.picture_milliseconds),
+            picture_and_compile: gain(|measured| &measured.picture_and_compile_milliseconds),
+        }
+    }
+}
+
+/// The pixels from which on native code, compiled first, is done before the interpreter; `None` when it never is.
+///
+/// Pictures are taken to cost in proportion to their pixels.
+fn break_even(interpreter: &Measured, native: &Measured, size: Size) -> Option<f64> {
+    let saved = interpreter.picture_milliseconds.median - native.picture_milliseconds.median;
+    let spent = native.compile_milliseconds.median - interpreter.compile_milliseconds.median;
+    (saved > 0.0).then(|| (spent.max(0.0) / saved * size.pixels() as f64).ceil())
+}
+
+/// All measurements. Its fields are the keys of `iso bench --json`.
+#[derive(Debug, Serialize)]
+struct Report {
+    operations: usize,
+    method: &'static str,
+    width: u32,
+    height: u32,
+    runs: usize,
+    interpreter: Measured,
+    native: Measured,
+    gain: Gain,
+    break_even_pixels: Option<f64>,
+}
+
+impl Report {
+    fn write(&self, writer: &mut dyn Write) -> io::Result<()> {
+        let Self { interpreter, native, gain, .. } = self;
+        writeln!(
+            writer,
+            "{} operations; method {}, {}x{} pixels; medians of {} runs (least to greatest)\n",
+            self.operations, self.method, self.width, self.height, self.runs
+        )?;
+        writeln!(writer, "{:<26} {:>28} {:>28} {:>8}", "", "interpreter", "native code", "gain")?;
+        let mut line = |name: &str, spread: fn(&Measured) -> &Spread, gain: Option<f64>| {
+            let gain = gain.map_or_else(String::new, |gain| format!("{gain:.2}x"));
+            let [left, right] = [interpreter, native].map(|measured| shown(spread(measured)));
+            writeln!(writer, "{name:<26} {left:>28} {right:>28} {gain:>8}")
+        };
+        line("a point alone, ns", |measured| &measured.point_nanoseconds, Some(gain.point))?;
+        line("a point in a batch, ns", |measured| &measured.batch_nanoseconds, Some(gain.batch))?;
+        line("compiling, ms", |measured| &measured.compile_milliseconds, None)?;
+        line("picture, ms", |measured| &measured.picture_milliseconds, Some(gain.picture))?;
+        line(
+            "picture and compiling, ms",
+            |measured| &measured.picture_and_compile_milliseconds,
+            Some(gain.picture_and_compile),
+        )?;
+        match self.break_even_pixels {
+            Some(pixels) => {
+                let side = pixels.sqrt().ceil();
+                writeln!(writer, "\nnative code is done first from {pixels} pixels on, about {side}x{side}")
+            }
+            None => writeln!(writer, "\nnative code is never done first"),
+        }
+    }
+}
+
+fn shown(spread: &Spread) -> String {
+    format!("{:.3} ({:.3} to {:.3})", spread.median, spread.least, spread.greatest)
+}

@@ -1,0 +1,148 @@
+//! `iso eval`: values of a formula at points, enclosures over boxes.
+
+use std::io::{self, Write};
+use std::path::Path;
+use std::sync::Arc;
+
+use iso_expr::engine::{Boxes, Enclosures, Points};
+use iso_expr::{Decoration, Engine, Program, Scratch};
+
+use crate::engine::engine;
+use crate::failure::Failure;
+use crate::flags::EvalFlags;
+use crate::formula::{Programs, understand};
+use crate::output::Destination;
+use crate::table::{self, Table, TableError, digits, write_row};
+
+/// Rows that are evaluated at a time.
+const BATCH: usize = 4096;
+
+/// Evaluates a formula at the rows of a table.
+pub(crate) fn run(flags: EvalFlags) -> Result<(), Failure> {
+    let destination = Destination::new(flags.places.output)?;
+    let formula = understand(&flags.formula)?;
+    let programs = Programs::new(formula.program());
+    let program = if flags.places.gradient { programs.value_and_gradient } else { programs.value };
+    let engine = engine(flags.engine.engine)?;
+    match (&flags.places.points, &flags.places.boxes) {
+        (Some(path), _) => at_points(engine, &program, path, &destination),
+        (None, Some(path)) => over_boxes(engine, &program, path, &destination),
+        (None, None) => Err(Failure::usage("there is nowhere to evaluate", "give --points or --boxes")),
+    }
+}
+
+fn at_points(
+    engine: Arc<dyn Engine>,
+    program: &Program,
+    path: &Path,
+    destination: &Destination,
+) -> Result<(), Failure> {
+    let points = table::read(path, ["x", "y", "z"])?;
+    let kernel = engine.batch(program)?;
+    let [x, y, z] = &points.columns;
+    let outputs = program.outputs().len();
+    let mut scratch = Scratch::default();
+    destination.write(|writer| {
+        write_row(writer, &["value", "dx", "dy", "dz"][..outputs])?;
+        let mut values = Vec::new();
+        for ((x, y), z) in x.chunks(BATCH).zip(y.chunks(BATCH)).zip(z.chunks(BATCH)) {
+            values.resize(outputs * x.len(), 0.0);
+            kernel.evaluate(&mut scratch, Points { x, y, z }, &mut values);
+            for row in 0..x.len() {
+                write_row(writer, (0..outputs).map(|output| digits(values[output * x.len() + row])))?;
+            }
+        }
+        Ok(())
+    })
+}
+
+fn over_boxes(
+    engine: Arc<dyn Engine>,
+    program: &Program,
+    path: &Path,
+    destination: &Destination,
+) -> Result<(), Failure> {
+    let boxes = read_boxes(path)?;
+    let kernel = engine.boxes(program)?;
+    let outputs = program.outputs().len();
+    let mut scratch = Scratch::default();
+    destination.write(|writer| {
+        write_row(writer, &box_columns()[..3 * outputs])?;
+        for start in (0..boxes.rows()).step_by(BATCH) {
+            let rows = start..boxes.rows().min(start + BATCH);
+            let [x_lo, x_hi, y_lo, y_hi, z_lo, z_hi] =
+                boxes.columns.each_ref().map(|column| &column[rows.clone()]);
+            let batch = Boxes { lo: [x_lo, y_lo, z_lo], hi: [x_hi, y_hi, z_hi] };
+            let mut found = Found::with_room(rows.len() * outputs);
+            kernel.evaluate(&mut scratch, batch, found.enclosures());
+            for row in 0..rows.len() {
+                found.write_row(writer, (0..outputs).map(|output| output * rows.len() + row))?;
+            }
+        }
+        Ok(())
+    })
+}
+
+fn box_columns() -> Vec<String> {
+    let of = |prefix: &str| ["lo", "hi", "decoration"].map(|end| format!("{prefix}{end}"));
+    ["", "dx_", "dy_", "dz_"].into_iter().flat_map(of).collect()
+}
+
+/// The boxes of a table. Infinite ends are open; nan makes an empty box.
+fn read_boxes(path: &Path) -> Result<Table<6>, TableError> {
+    let boxes = table::read(path, ["x_lo", "x_hi", "y_lo", "y_hi", "z_lo", "z_hi"])?;
+    for row in 0..boxes.rows() {
+        let [x_lo, x_hi, y_lo, y_hi, z_lo, z_hi] = boxes.row(row);
+        for (axis, lo, hi) in [('x', x_lo, x_hi), ('y', y_lo, y_hi), ('z', z_lo, z_hi)] {
+            if lo > hi || lo == f64::INFINITY || hi == f64::NEG_INFINITY {
+                return Err(boxes.meaningless(
+                    row,
+                    format!("no number lies between {axis}_lo = {lo} and {axis}_hi = {hi}"),
+                ));
+            }
+        }
+    }
+    Ok(boxes)
+}
+
+/// Enclosures of a batch.
+struct Found {
+    lo: Vec<f64>,
+    hi: Vec<f64>,
+    decoration: Vec<Decoration>,
+}
+
+impl Found {
+    fn with_room(count: usize) -> Self {
+        Self { lo: vec![0.0; count], hi: vec![0.0; count], decoration: vec![Decoration::Trivial; count] }
+    }
+
+    fn enclosures(&mut self) -> Enclosures<'_> {
+        Enclosures { lo: &mut self.lo, hi: &mut self.hi, decoration: &mut self.decoration }
+    }
+
+    fn write_row(&self, writer: &mut dyn Write, places: impl Iterator<Item = usize>) -> io::Result<()> {
+        write_row(
+            writer,
+            places.flat_map(|place| {
+                let decoration = decoration_name(self.decoration[place]).to_owned();
+                [end(self.lo[place]), end(self.hi[place]), decoration]
+            }),
+        )
+    }
+}
+
+/// An end of an enclosure; that of an empty one is NaN.
+fn end(value: f64) -> String {
+    if value.is_nan() { "empty".to_owned() } else { digits(value) }
+}
+
+/// The decoration's name in IEEE 1788.
+fn decoration_name(decoration: Decoration) -> &'static str {
+    match decoration {
+        Decoration::Common => "com",
+        Decoration::Continuous => "dac",
+        Decoration::Defined => "def",
+        Decoration::Trivial => "trv",
+    }
+}

@@ -1,0 +1,87 @@
+//! `iso explain`: what becomes of a formula on its way to machine code.
+
+use std::io::{self, Write};
+use std::time::Duration;
+
+use clap::ValueEnum;
+use iso_expr::Program;
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use crate::clock::{milliseconds, timed};
+use crate::failure::Failure;
+use crate::flags::{ExplainFlags, Section};
+use crate::formula::{Source, minus_level};
+use crate::output::to_standard_output;
+
+/// Shows the stages of a formula.
+pub(crate) fn run(flags: ExplainFlags) -> Result<(), Failure> {
+    let wanted =
+        |section: &Section| flags.sections.sections.is_empty() || flags.sections.sections.contains(section);
+    let stages = stages(&flags)?;
+    let shown = || stages.iter().filter(|(section, _)| wanted(section));
+    to_standard_output(|writer| {
+        if flags.sections.json {
+            let object: Map<String, Value> = shown()
+                .map(|(section, stage)| Ok((section.name(), serde_json::to_value(stage)?)))
+                .collect::<serde_json::Result<_>>()?;
+            serde_json::to_writer_pretty(&mut *writer, &object)?;
+            return writeln!(writer);
+        }
+        shown().try_for_each(|(section, stage)| stage.write(writer, &section.name()))
+    })
+}
+
+impl Section {
+    /// The section's name on the command line and in reports.
+    fn name(self) -> String {
+        self.to_possible_value().expect("no section is hidden").get_name().to_owned()
+    }
+}
+
+/// What stands at the end of a stage.
+#[derive(Debug, Serialize)]
+struct Stage {
+    size: usize,
+    unit: &'static str,
+    milliseconds: f64,
+    text: String,
+}
+
+impl Stage {
+    fn new(size: usize, unit: &'static str, time: Duration, text: String) -> Self {
+        Self { size, unit, milliseconds: milliseconds(time), text }
+    }
+
+    fn program((program, time): &(Program, Duration)) -> Self {
+        Self::new(program.operations(), "operations", *time, program.to_string())
+    }
+
+    fn write(&self, writer: &mut dyn Write, name: &str) -> io::Result<()> {
+        writeln!(writer, "{name}: {} {}, {:.3} ms", self.size, self.unit, self.milliseconds)?;
+        for line in self.text.lines() {
+            writeln!(writer, "    {line}")?;
+        }
+        writeln!(writer)
+    }
+}
+
+fn stages(flags: &ExplainFlags) -> Result<Vec<(Section, Stage)>, Failure> {
+    let source = Source::read(&flags.formula.formula)?;
+    let (ast, parse_time) = timed(|| source.parse());
+    let ast = ast?;
+    let (program, lower_time) = timed(|| {
+        let formula = source.lower(&ast, &flags.formula.settings)?;
+        minus_level(&formula, flags.level.level)
+    });
+    let program = program?;
+    let simplified = timed(|| program.simplified());
+    let gradient = timed(|| simplified.0.with_gradient().simplified());
+    let tree = ast.outline().to_string();
+    Ok(vec![
+        (Section::Tree, Stage::new(tree.lines().count(), "lines", parse_time, tree)),
+        (Section::Program, Stage::program(&(program, lower_time))),
+        (Section::Simplified, Stage::program(&simplified)),
+        (Section::Gradient, Stage::program(&gradient)),
+    ])
+}

@@ -1,0 +1,8 @@
+//! What the commands do, one module each.
+
+pub(crate) mod bench;
+pub(crate) mod completions;
+pub(crate) mod eval;
+pub(crate) mod explain;
+pub(crate) mod render;
+pub(crate) mod trace;

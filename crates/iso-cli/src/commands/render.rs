@@ -1,0 +1,132 @@
+//! `iso render`: pictures of surfaces.
+
+use std::io::{self, Write};
+use std::sync::Arc;
+
+use iso_expr::Engine;
+use iso_grid::{Counters, Region, Surface};
+use iso_render::{Camera, Picture, Scene, Shading, Size, render};
+use rayon::ThreadPool;
+
+use crate::camera::camera;
+use crate::clock::{Phases, add_to};
+use crate::engine::{engine, threads};
+use crate::failure::Failure;
+use crate::flags::RenderFlags;
+use crate::formula::{Programs, Source, minus_level};
+use crate::method::Method;
+use crate::output::to_standard_output;
+use crate::pictures::PictureFiles;
+use crate::progress::Progress;
+use crate::summary::Summary;
+
+/// Draws a surface.
+pub(crate) fn run(flags: RenderFlags) -> Result<(), Failure> {
+    let mut phases = Phases::default();
+    let request = Request::resolve(flags, &mut phases)?;
+    let summary = request.fulfil(phases)?;
+    match request.speech {
+        Speech::Json => to_standard_output(|writer| summary.write_json(writer)),
+        Speech::Line => {
+            // The picture is done: a summary that nobody can read does not spoil it.
+            let _ = writeln!(io::stderr(), "{}", summary.line());
+            Ok(())
+        }
+        Speech::Nothing => Ok(()),
+    }
+}
+
+/// What is to be drawn, how, and where it goes: all that flags and files say, checked.
+struct Request {
+    programs: Programs,
+    region: Region,
+    method: Method,
+    camera: Camera,
+    size: Size,
+    shows_status: bool,
+    files: PictureFiles,
+    speech: Speech,
+    engine: Arc<dyn Engine>,
+    threads: ThreadPool,
+}
+
+/// What is said when the picture is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Speech {
+    Nothing,
+    Line,
+    Json,
+}
+
+impl Request {
+    fn resolve(flags: RenderFlags, phases: &mut Phases) -> Result<Self, Failure> {
+        let (region, size) = (flags.method.region, flags.output.size);
+        let method = Method::resolve(&flags.method)?;
+        let camera = camera(&flags.camera, &region, size)?;
+        let files = PictureFiles::resolve(&flags.output)?;
+        let speech = match (flags.output.json, flags.output.quiet) {
+            (true, _) => Speech::Json,
+            (false, true) => Speech::Nothing,
+            (false, false) => Speech::Line,
+        };
+        let source = Source::read(&flags.formula.formula)?;
+        let programs = add_to(&mut phases.parse, || {
+            let formula = source.lower(&source.parse()?, &flags.formula.settings)?;
+            Ok::<_, Failure>(Programs::new(&minus_level(&formula, flags.level.level)?))
+        })?;
+        Ok(Self {
+            programs,
+            region,
+            method,
+            camera,
+            size,
+            shows_status: flags.output.show_status,
+            files,
+            speech,
+            engine: add_to(&mut phases.compile, || engine(flags.engine.engine))?,
+            threads: threads(&flags.threads)?,
+        })
+    }
+
+    /// Draws the picture and writes its files.
+    fn fulfil(&self, mut phases: Phases) -> Result<Summary, Failure> {
+        let Programs { value, value_and_gradient } = self.programs.clone();
+        let (operations, gradient_operations) = (value.operations(), value_and_gradient.operations());
+        let surface = Surface::new(Arc::clone(&self.engine), value, value_and_gradient);
+        let (picture, preprocessing) = self.threads.install(|| self.draw(&surface, &mut phases))?;
+        add_to(&mut phases.encode, || self.files.write(&picture))?;
+        let mut counters = picture.counters;
+        counters += preprocessing;
+        Ok(Summary {
+            files: self.files.names(),
+            width: self.size.width(),
+            height: self.size.height(),
+            box_min: self.region.min().to_array(),
+            box_max: self.region.max().to_array(),
+            method: self.method.name(),
+            engine: self.engine.name(),
+            threads: self.threads.current_num_threads(),
+            operations,
+            gradient_operations,
+            pixels: picture.counts,
+            counters,
+            milliseconds: phases,
+        })
+    }
+
+    /// The picture, and the work of preprocessing.
+    fn draw(&self, surface: &Surface, phases: &mut Phases) -> Result<(Picture, Counters), Failure> {
+        add_to(&mut phases.compile, || self.method.compile(surface))?;
+        let tracer = add_to(&mut phases.preprocess, || self.method.prepare(surface, self.region))?;
+        let shading = Shading::new(&self.camera, self.shows_status);
+        let scene = Scene { surface, tracer: tracer.as_ref(), camera: &self.camera, shading: &shading };
+        let progress = Progress::new(self.speech == Speech::Line);
+        let report = |done, all| progress.report(done, all);
+        let picture = render(&scene, self.size, self.files.layers(), &report);
+        progress.finish();
+        let picture = picture?;
+        phases.trace += 1e3 * picture.trace_seconds;
+        phases.shade += 1e3 * picture.shade_seconds;
+        Ok((picture, tracer.preprocessing()))
+    }
+}

@@ -1,0 +1,95 @@
+//! `iso trace`: rays of a table, followed to the surface.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use glam::DVec3;
+use iso_expr::CompileError;
+use iso_grid::{Outcome, Ray, Surface, Tracer, Workspace, normals};
+use iso_render::Status;
+use rayon::prelude::*;
+
+use crate::engine::{engine, threads};
+use crate::failure::Failure;
+use crate::flags::TraceFlags;
+use crate::formula::{Programs, minus_level, understand};
+use crate::method::Method;
+use crate::output::Destination;
+use crate::pictures::status_name;
+use crate::table::{self, TableError, digits, write_row};
+
+/// Rays that a thread follows at a time.
+const BATCH: usize = 1024;
+
+/// Follows the rays of a table.
+pub(crate) fn run(flags: TraceFlags) -> Result<(), Failure> {
+    let method = Method::resolve(&flags.method)?;
+    let destination = Destination::new(flags.tables.output)?;
+    let formula = understand(&flags.formula)?;
+    let programs = Programs::new(&minus_level(&formula, flags.level.level)?);
+    let rays = read_rays(&flags.tables.rays)?;
+    let surface = Surface::new(engine(flags.engine.engine)?, programs.value, programs.value_and_gradient);
+    let followed = threads(&flags.threads)?.install(|| {
+        let tracer = method.prepare(&surface, flags.method.region)?;
+        Ok::<_, Failure>(follow(&surface, tracer.as_ref(), &rays)?)
+    })?;
+    destination.write(|writer| {
+        write_row(writer, ["status", "t", "t_lo", "t_hi", "x", "y", "z", "nx", "ny", "nz"])?;
+        rays.iter()
+            .zip(&followed)
+            .try_for_each(|(ray, (outcome, normal))| write_outcome(writer, ray, outcome, *normal))
+    })
+}
+
+fn read_rays(path: &Path) -> Result<Vec<Ray>, TableError> {
+    let table = table::read(path, ["ox", "oy", "oz", "dx", "dy", "dz"])?;
+    let ray = |row| {
+        let [ox, oy, oz, dx, dy, dz] = table.row(row);
+        let ray = Ray { origin: DVec3::new(ox, oy, oz), direction: DVec3::new(dx, dy, dz) };
+        if !(ray.origin.is_finite() && ray.direction.is_finite()) {
+            return Err(table.meaningless(row, "a ray needs six finite numbers"));
+        }
+        if ray.direction == DVec3::ZERO {
+            return Err(table.meaningless(row, "the direction (dx, dy, dz) is zero"));
+        }
+        Ok(ray)
+    };
+    (0..table.rows()).map(ray).collect()
+}
+
+/// What becomes of each ray, and the normal where it ends.
+fn follow(
+    surface: &Surface,
+    tracer: &dyn Tracer,
+    rays: &[Ray],
+) -> Result<Vec<(Outcome, DVec3)>, CompileError> {
+    let mut followed = vec![(Outcome::Miss, DVec3::NAN); rays.len()];
+    rays.par_chunks(BATCH).zip(followed.par_chunks_mut(BATCH)).try_for_each_init(
+        Workspace::default,
+        |workspace, (rays, followed)| {
+            let mut outcomes = vec![Outcome::Miss; rays.len()];
+            let mut found_normals = vec![DVec3::NAN; rays.len()];
+            tracer.trace(workspace, rays, &mut outcomes);
+            normals(surface, workspace, rays, &outcomes, &mut found_normals)?;
+            for ((place, outcome), normal) in followed.iter_mut().zip(outcomes).zip(found_normals) {
+                *place = (outcome, normal);
+            }
+            Ok(())
+        },
+    )?;
+    Ok(followed)
+}
+
+fn write_outcome(writer: &mut dyn Write, ray: &Ray, outcome: &Outcome, normal: DVec3) -> io::Result<()> {
+    let (t, t_lo, t_hi) = match outcome {
+        Outcome::Hit(hit) | Outcome::Touch(hit) => (hit.t, hit.bracket.start, hit.bracket.end),
+        Outcome::Miss => (f64::NAN, f64::NAN, f64::NAN),
+        Outcome::Undecided(span) => (f64::NAN, span.start, span.end),
+    };
+    let point = ray.at(t);
+    let numbers = [t, t_lo, t_hi, point.x, point.y, point.z, normal.x, normal.y, normal.z];
+    write_row(
+        writer,
+        std::iter::once(status_name(Status::from(outcome)).to_owned()).chain(numbers.map(digits)),
+    )
+}

@@ -1,0 +1,53 @@
+//! Flags of `iso eval`.
+
+use std::path::PathBuf;
+
+use clap::{ArgGroup, Args};
+
+use super::{EngineFlag, FormulaFlags};
+
+/// Evaluate a formula at points or over boxes
+///
+/// The value of an equation is its left side minus its right side. Numbers are written with the digits that read back to
+/// the same float.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES, group = ArgGroup::new("places").required(true))]
+pub(crate) struct EvalFlags {
+    #[command(flatten)]
+    pub(crate) formula: FormulaFlags,
+    #[command(flatten)]
+    pub(crate) places: PlacesFlags,
+    #[command(flatten)]
+    pub(crate) engine: EngineFlag,
+}
+
+/// Where the formula is evaluated, and what is written.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Tables")]
+pub(crate) struct PlacesFlags {
+    /// A table of points with the columns x,y,z; `-` is standard input
+    #[arg(long, value_name = "FILE.csv", group = "places")]
+    pub(crate) points: Option<PathBuf>,
+
+    /// A table of boxes with the columns x_lo,x_hi,y_lo,y_hi,z_lo,z_hi; `-` is standard input
+    #[arg(long, value_name = "FILE.csv", group = "places")]
+    pub(crate) boxes: Option<PathBuf>,
+
+    /// Add the derivatives along x, y and z
+    #[arg(long)]
+    pub(crate) gradient: bool,
+
+    /// The table of results [default: standard output]
+    #[arg(short, long, value_name = "FILE.csv")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+const EXAMPLES: &str = "\
+Columns of the result: value (and dx,dy,dz) at points; lo,hi,decoration (and dx_lo,dx_hi,dx_decoration and so on) over boxes.
+The decoration says what is known of the formula on the box: com (defined, continuous, bounded), dac (defined, continuous),
+def (defined) or trv (nothing).
+
+Examples:
+  iso eval 'sqrt(x^2 + y^2) - z' --points points.csv
+  iso eval 'sqrt(x^2 + y^2) - z' --points points.csv --gradient -o values.csv
+  iso eval '1/x + y z' --boxes boxes.csv";

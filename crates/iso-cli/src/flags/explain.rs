@@ -1,0 +1,55 @@
+//! Flags of `iso explain`.
+
+use clap::{Args, ValueEnum};
+
+use super::{FormulaFlags, LevelFlag};
+
+/// Show what becomes of a formula on its way to machine code
+///
+/// Each stage comes with its size and the time that it took.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct ExplainFlags {
+    #[command(flatten)]
+    pub(crate) formula: FormulaFlags,
+    #[command(flatten)]
+    pub(crate) level: LevelFlag,
+    #[command(flatten)]
+    pub(crate) sections: SectionFlags,
+}
+
+/// What is shown.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Output")]
+pub(crate) struct SectionFlags {
+    /// Show these sections only; separated by commas [default: all]
+    #[arg(long = "section", value_name = "SECTIONS", value_enum, value_delimiter = ',')]
+    pub(crate) sections: Vec<Section>,
+
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// The stages on the way to machine code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Section {
+    /// The formula as it was understood
+    Tree,
+    /// The program as the tree is lowered to it
+    Program,
+    /// The program after simplification
+    Simplified,
+    /// The program with its three derivatives, after simplification
+    Gradient,
+    /// Cranelift's intermediate code
+    Clif,
+    /// Machine code
+    Assembly,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  iso explain '(x^2+y^2-1)^2 + 4z^2 + 0.5x = 0.2'
+  iso explain 'x^3 y + sin(x)' --section simplified,gradient
+  iso explain @surface.txt --json";

@@ -1,0 +1,90 @@
+//! Flags that say where and how the surface is looked for.
+
+use clap::{Args, ValueEnum};
+use iso_grid::Region;
+
+use crate::values;
+
+/// The region and the method of intersection.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Region and method")]
+pub(crate) struct MethodFlags {
+    /// The box in which the surface is looked for
+    ///
+    /// `a,b` reaches from a to b along every axis; six numbers are xmin,ymin,zmin,xmax,ymax,zmax.
+    #[arg(long = "box", value_name = "BOX", value_parser = values::region, allow_hyphen_values = true)]
+    #[arg(default_value = "-2,2")]
+    pub(crate) region: Region,
+
+    /// The method of intersection
+    #[arg(long, value_name = "METHOD", value_enum, default_value_t = MethodName::Certified)]
+    pub(crate) method: MethodName,
+
+    /// Cells of the grid along every axis, or i,j,k [default: 30]
+    #[arg(long, value_name = "N", value_parser = values::counts)]
+    pub(crate) grid: Option<[u32; 3]>,
+
+    /// Parts into which a cell beside the surface is cut, along every axis or i,j,k [default: 2; 3 for grids up to 20]
+    #[arg(long, value_name = "M", value_parser = values::counts)]
+    pub(crate) refine: Option<[u32; 3]>,
+
+    /// The step between samples, in parts of the longest side of a cell [default: 0.05]
+    #[arg(long, value_name = "STEP", value_parser = values::positive)]
+    pub(crate) step: Option<f64>,
+
+    /// The width, relative to t, to which the certified method encloses roots; coarser is faster [default: 1e-12]
+    #[arg(long, value_name = "WIDTH", value_parser = values::positive)]
+    pub(crate) accuracy: Option<f64>,
+}
+
+/// The engine that evaluates the formula.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Running")]
+pub(crate) struct EngineFlag {
+    /// The engine that evaluates the formula; the results are the same
+    #[arg(long, value_name = "ENGINE", value_enum, default_value_t = EngineName::Jit)]
+    pub(crate) engine: EngineName,
+}
+
+/// How many threads work.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Running")]
+pub(crate) struct ThreadsFlag {
+    /// Threads that work at the same time; 0 for as many as there are cores
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=1024))]
+    pub(crate) threads: u16,
+}
+
+/// The methods of intersection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MethodName {
+    /// Prove every pixel with intervals; nothing to tune
+    Certified,
+    /// Cut the box into cells, keep those whose corners differ in sign, sample inside them
+    Grid,
+    /// The same, hierarchically
+    Octree,
+    /// Sample along the whole ray
+    Direct,
+}
+
+impl MethodName {
+    /// The method's name on the command line.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Certified => "certified",
+            Self::Grid => "grid",
+            Self::Octree => "octree",
+            Self::Direct => "direct",
+        }
+    }
+}
+
+/// The engines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EngineName {
+    /// Native code
+    Jit,
+    /// The interpreter
+    Interp,
+}

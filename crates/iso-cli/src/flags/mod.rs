@@ -1,0 +1,84 @@
+//! The raw flags of the command line, as clap reads them. Requests are made from them in [`crate::request`].
+
+mod bench;
+mod camera;
+mod eval;
+mod explain;
+mod formula;
+mod method;
+mod render;
+mod trace;
+
+pub(crate) use bench::BenchFlags;
+pub(crate) use camera::CameraFlags;
+pub(crate) use eval::EvalFlags;
+pub(crate) use explain::{ExplainFlags, Section};
+pub(crate) use formula::{FormulaFlags, LevelFlag};
+pub(crate) use method::{EngineFlag, EngineName, MethodFlags, MethodName, ThreadsFlag};
+pub(crate) use render::{PictureFlags, RenderFlags};
+pub(crate) use trace::TraceFlags;
+
+use clap::{Parser, Subcommand};
+use clap_complete::Shell;
+
+/// See F(x, y, z) = C.
+#[derive(Debug, Parser)]
+#[command(name = "iso", version, about = "See F(x, y, z) = C", long_about = LONG_ABOUT, after_help = EXAMPLES, max_term_width = 100)]
+#[command(arg_required_else_help = true, propagate_version = true, disable_help_subcommand = true)]
+#[command(args_override_self = true)]
+pub(crate) struct Flags {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// What `iso` can do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Draw a surface
+    Render(Box<RenderFlags>),
+    /// Evaluate a formula at points or over boxes
+    Eval(EvalFlags),
+    /// Follow rays from a table to the surface
+    Trace(TraceFlags),
+    /// Show what becomes of a formula on its way to machine code
+    Explain(ExplainFlags),
+    /// Measure the interpreter against native code
+    Bench(BenchFlags),
+    /// Write a completion script for a shell
+    #[command(after_help = COMPLETION_EXAMPLES)]
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+}
+
+const LONG_ABOUT: &str = "\
+iso draws the surface on which a formula F(x, y, z) has the value C. It compiles the formula to native code, \
+follows a ray for every pixel, and by default proves what it draws.";
+
+const EXAMPLES: &str = "\
+Examples:
+  iso render 'x^2 + y^2 + z^2 = 1' -o sphere.png
+  iso render 'cos x + cos y + cos z' --level 0.5 --box -6,6 -o gyre.png
+  iso render @heart.txt --set a=2 --size 1024x1024
+  iso eval 'sin(x)*y' --points points.csv --gradient
+  iso explain 'x^2 + y^2 - z'
+
+Exit codes: 0 done, 1 failed, 2 bad usage or bad formula.";
+
+const COMPLETION_EXAMPLES: &str = "\
+Examples:
+  iso completions bash > ~/.local/share/bash-completion/completions/iso
+  iso completions zsh > ~/.zfunc/_iso
+  iso completions fish > ~/.config/fish/completions/iso.fish";
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_flags_are_consistent() {
+        super::Flags::command().debug_assert();
+    }
+}

@@ -1,0 +1,48 @@
+//! Flags of `iso trace`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{EngineFlag, FormulaFlags, LevelFlag, MethodFlags, ThreadsFlag};
+
+/// Follow rays from a table to the surface
+///
+/// A ray is the points o + t·d with t ≥ 0, where d may have any length. Rows of the result are in the order of the rays.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct TraceFlags {
+    #[command(flatten)]
+    pub(crate) formula: FormulaFlags,
+    #[command(flatten)]
+    pub(crate) level: LevelFlag,
+    #[command(flatten)]
+    pub(crate) method: MethodFlags,
+    #[command(flatten)]
+    pub(crate) tables: RayTableFlags,
+    #[command(flatten)]
+    pub(crate) engine: EngineFlag,
+    #[command(flatten)]
+    pub(crate) threads: ThreadsFlag,
+}
+
+/// The rays and what becomes of them.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Tables")]
+pub(crate) struct RayTableFlags {
+    /// A table of rays with the columns ox,oy,oz,dx,dy,dz; `-` is standard input
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) rays: PathBuf,
+
+    /// The table of results [default: standard output]
+    #[arg(short, long, value_name = "FILE.csv")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+const EXAMPLES: &str = "\
+Columns of the result: status,t,t_lo,t_hi,x,y,z,nx,ny,nz. The status is hit, touch, miss or undecided; t lies between t_lo and
+t_hi, and the normal points towards larger F. What does not exist is nan.
+
+Examples:
+  iso trace 'x^2 + y^2 + z^2 = 1' --rays rays.csv
+  iso trace @surface.txt --rays rays.csv --box -3,3 --method grid --grid 60 -o hits.csv";

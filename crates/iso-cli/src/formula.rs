@@ -1,0 +1,102 @@
+//! From the formula on the command line to a surface's programs.
+
+use std::borrow::Cow;
+use std::ffi::OsStr;
+use std::fs;
+use std::io::{self, Read};
+
+use iso_expr::{Ast, Formula, FormulaError, Program};
+
+use crate::failure::Failure;
+use crate::flags::FormulaFlags;
+use crate::values::Setting;
+
+/// A formula as it was given, not yet known to be text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Source {
+    /// What it is called in reports: `formula`, or the name of its file.
+    pub(crate) name: String,
+    bytes: Vec<u8>,
+}
+
+impl Source {
+    /// Takes the argument itself, or reads the file of `@file`, or standard input for `-`.
+    pub(crate) fn read(argument: &OsStr) -> Result<Self, Failure> {
+        let (name, read) = match argument.as_encoded_bytes() {
+            b"-" => ("standard input".to_owned(), read_standard_input()),
+            [b'@', ..] => {
+                let path = argument.to_string_lossy()[1..].to_owned();
+                let read = fs::read(&path);
+                (path, read)
+            }
+            bytes => ("formula".to_owned(), Ok(bytes.to_vec())),
+        };
+        match read {
+            Ok(bytes) => Ok(Self { name, bytes }),
+            Err(error) => Err(Failure::Read { path: name.into(), error }),
+        }
+    }
+
+    /// The tree.
+    pub(crate) fn parse(&self) -> Result<Ast, Failure> {
+        iso_expr::decode(&self.bytes).and_then(Ast::parse).map_err(|error| self.wrong(error))
+    }
+
+    /// The program of a tree of this source, with other values for some of its parameters.
+    pub(crate) fn lower(&self, ast: &Ast, settings: &[Setting]) -> Result<Formula, Failure> {
+        let settings: Vec<(String, f64)> =
+            settings.iter().map(|setting| (setting.name.clone(), setting.value)).collect();
+        ast.lower(&settings).map_err(|error| self.wrong(error))
+    }
+
+    /// The text; what is not UTF-8 is replaced.
+    pub(crate) fn text(&self) -> Cow<'_, str> {
+        String::from_utf8_lossy(&self.bytes)
+    }
+
+    fn wrong(&self, error: FormulaError) -> Failure {
+        Failure::Formula { source_text: Box::new(self.clone()), error: Box::new(error) }
+    }
+}
+
+fn read_standard_input() -> io::Result<Vec<u8>> {
+    let mut content = Vec::new();
+    io::stdin().lock().read_to_end(&mut content)?;
+    Ok(content)
+}
+
+/// Reads and understands the formula that `flags` name.
+pub(crate) fn understand(flags: &FormulaFlags) -> Result<Formula, Failure> {
+    let source = Source::read(&flags.formula)?;
+    source.lower(&source.parse()?, &flags.settings)
+}
+
+/// The program of F − C. An equation has its level built in, so that giving another one is an error.
+pub(crate) fn minus_level(formula: &Formula, level: Option<f64>) -> Result<Program, Failure> {
+    match level {
+        None => Ok(formula.program().clone()),
+        Some(level) if formula.is_equation() => Err(Failure::usage(
+            format!("a level ({level}) is given with an equation, which needs none"),
+            "the surface of left = right is where left − right = 0: leave out --level, or write (left) - (right)",
+        )),
+        Some(level) => Ok(formula.minus_level(level)),
+    }
+}
+
+/// The programs of a surface: F − C alone, and with its three derivatives.
+#[derive(Clone)]
+pub(crate) struct Programs {
+    /// F − C.
+    pub(crate) value: Program,
+    /// F − C, ∂x, ∂y and ∂z.
+    pub(crate) value_and_gradient: Program,
+}
+
+impl Programs {
+    /// Simplifies and differentiates the program of F − C.
+    pub(crate) fn new(value: &Program) -> Self {
+        let value = value.simplified();
+        let value_and_gradient = value.with_gradient().simplified();
+        Self { value, value_and_gradient }
+    }
+}

@@ -1,0 +1,179 @@
+//! Output files, which appear whole or not at all.
+
+use std::error::Error;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+use crate::failure::Failure;
+
+/// Where the results of a command go.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Destination {
+    /// Standard output.
+    Standard,
+    /// A file.
+    File(OutputFile),
+}
+
+impl Destination {
+    /// Standard output when `path` is missing or `-`.
+    pub(crate) fn new(path: Option<PathBuf>) -> Result<Self, Failure> {
+        match path {
+            Some(path) if path.as_os_str() != "-" => OutputFile::new(path).map(Self::File),
+            _ => Ok(Self::Standard),
+        }
+    }
+
+    /// Writes what `fill` writes.
+    pub(crate) fn write(&self, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
+        match self {
+            Self::File(file) => file.write(|writer| fill(writer)),
+            Self::Standard => to_standard_output(fill),
+        }
+    }
+}
+
+/// Writes what `fill` writes to standard output.
+pub(crate) fn to_standard_output(fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
+    let mut writer = BufWriter::new(io::stdout().lock());
+    fill(&mut writer).and_then(|()| writer.flush()).map_err(Failure::StandardOutput)
+}
+
+/// A file that can be written, as far as can be known before it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct OutputFile {
+    /// As given.
+    path: PathBuf,
+    place: Place,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Place {
+    /// A regular file or none yet, to be replaced; symbolic links are followed.
+    Replaced(PathBuf),
+    /// A pipe or a device, which must stay where it is.
+    Stream,
+}
+
+impl OutputFile {
+    /// Makes sure that `path` can be written, so that nothing is computed in vain. Leaves no trace there.
+    pub(crate) fn new(path: PathBuf) -> Result<Self, Failure> {
+        let place = match fs::metadata(&path) {
+            Ok(found) if found.is_dir() => {
+                let error = io::Error::new(io::ErrorKind::IsADirectory, "it is a directory");
+                return Err(Failure::write(&path, error));
+            }
+            Ok(found) if !found.is_file() => Place::Stream,
+            Ok(_) => Place::Replaced(path.canonicalize().map_err(|error| Failure::write(&path, error))?),
+            Err(_) => Place::Replaced(path.clone()),
+        };
+        if let Place::Replaced(target) = &place {
+            temporary_beside(target).map_err(|error| Failure::write(&path, error))?;
+        }
+        Ok(Self { path, place })
+    }
+
+    /// The path as given.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes what `fill` writes: to a temporary file beside the target, which then takes its place.
+    pub(crate) fn write<E>(
+        &self,
+        fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), E>,
+    ) -> Result<(), Failure>
+    where
+        E: Into<Box<dyn Error + Send + Sync>>,
+    {
+        let unwritable = |error: io::Error| Failure::write(&self.path, error);
+        let filled = |file: File| {
+            let mut writer = BufWriter::new(file);
+            fill(&mut writer).map_err(|error| Failure::write(&self.path, error))?;
+            writer.flush().map_err(unwritable)
+        };
+        match &self.place {
+            Place::Stream => filled(File::create(&self.path).map_err(unwritable)?),
+            Place::Replaced(target) => {
+                let temporary = temporary_beside(target).map_err(unwritable)?;
+                filled(temporary.reopen().map_err(unwritable)?)?;
+                temporary.persist(target).map_err(|error| unwritable(error.error))?;
+                Ok(())
+            }
+        }
+    }
+}
+
+fn temporary_beside(target: &Path) -> io::Result<NamedTempFile> {
+    let folder = match target.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".iso-");
+    // Temporary files are private by default; a result is as readable as any file that the user creates.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+    }
+
+    #[test]
+    fn a_file_is_replaced_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.csv");
+        fs::write(&path, "before").unwrap();
+        let file = OutputFile::new(path.clone()).unwrap();
+        file.write(|writer| write!(writer, "after")).unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "after");
+        assert_eq!(names(folder.path()), ["out.csv"]);
+    }
+
+    #[test]
+    fn a_failure_leaves_what_was_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.csv");
+        fs::write(&path, "before").unwrap();
+        let file = OutputFile::new(path.clone()).unwrap();
+        let result = file.write(|writer| {
+            write!(writer, "half of it")?;
+            Err(io::Error::other("no more"))
+        });
+        assert!(result.is_err());
+        assert_eq!(fs::read_to_string(&path).unwrap(), "before");
+        assert_eq!(names(folder.path()), ["out.csv"]);
+    }
+
+    #[test]
+    fn places_that_cannot_be_written_are_known_before() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(OutputFile::new(folder.path().to_owned()).is_err());
+        assert!(OutputFile::new(folder.path().join("missing/out.csv")).is_err());
+        assert!(OutputFile::new(folder.path().join("out.csv")).is_ok());
+        assert!(names(folder.path()).is_empty());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn devices_and_links_stay() {
+        let folder = tempfile::tempdir().unwrap();
+        let (target, link) = (folder.path().join("target"), folder.path().join("link"));
+        fs::write(&target, "").unwrap();
+        std::os::unix::fs::symlink(&target, &link).unwrap();
+        OutputFile::new(link.clone()).unwrap().write(|writer| write!(writer, "text")).unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read_to_string(&target).unwrap(), "text");
+        OutputFile::new("/dev/null".into()).unwrap().write(|writer| write!(writer, "text")).unwrap();
+        assert!(!fs::metadata("/dev/null").unwrap().is_file());
+    }
+}

@@ -1,0 +1,108 @@
+//! The files that a picture is written to.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use iso_render::{ImageFormat, Layers, Picture, Status};
+
+use crate::failure::Failure;
+use crate::flags::PictureFlags;
+use crate::output::OutputFile;
+use crate::table::{digits, write_row};
+
+/// The files that a picture is written to, all of them writable as far as can be known.
+pub(crate) struct PictureFiles {
+    color: OutputFile,
+    format: ImageFormat,
+    depth: Option<OutputFile>,
+    normals: Option<OutputFile>,
+    points: Option<OutputFile>,
+}
+
+impl PictureFiles {
+    /// Checks names and places before anything is computed.
+    pub(crate) fn resolve(flags: &PictureFlags) -> Result<Self, Failure> {
+        let format = ImageFormat::of(&flags.output)?;
+        Ok(Self {
+            color: OutputFile::new(flags.output.clone())?,
+            format,
+            depth: with_extension(&flags.depth, "exr", "--depth")?,
+            normals: with_extension(&flags.normals, "exr", "--normals")?,
+            points: with_extension(&flags.points, "csv", "--points")?,
+        })
+    }
+
+    /// What must be kept of a picture to write these files.
+    pub(crate) fn layers(&self) -> Layers {
+        let points = self.points.is_some();
+        Layers {
+            color: true,
+            depth: points || self.depth.is_some(),
+            normals: points || self.normals.is_some(),
+            points,
+            statuses: points,
+        }
+    }
+
+    /// The files' names as given, the shaded picture first.
+    pub(crate) fn names(&self) -> Vec<String> {
+        let others = [&self.depth, &self.normals, &self.points].into_iter().flatten();
+        std::iter::once(&self.color).chain(others).map(|file| file.path().display().to_string()).collect()
+    }
+
+    /// Writes all files.
+    pub(crate) fn write(&self, picture: &Picture) -> Result<(), Failure> {
+        self.color.write(|writer| picture.write_color(self.format, writer))?;
+        if let Some(file) = &self.depth {
+            file.write(|writer| picture.write_depth(writer))?;
+        }
+        if let Some(file) = &self.normals {
+            file.write(|writer| picture.write_normals(writer))?;
+        }
+        if let Some(file) = &self.points {
+            file.write(|writer| write_points(picture, writer))?;
+        }
+        Ok(())
+    }
+}
+
+fn with_extension(
+    path: &Option<PathBuf>,
+    extension: &str,
+    flag: &str,
+) -> Result<Option<OutputFile>, Failure> {
+    let Some(path) = path else { return Ok(None) };
+    if !has_extension(path, extension) {
+        let problem = format!("{flag} writes .{extension} files, but the name given is {}", path.display());
+        return Err(Failure::Usage { problem, help: None });
+    }
+    OutputFile::new(path.clone()).map(Some)
+}
+
+fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|given| given.eq_ignore_ascii_case(extension))
+}
+
+/// A row for each pixel, rows of the picture from top to bottom.
+fn write_points(picture: &Picture, writer: &mut dyn Write) -> io::Result<()> {
+    write_row(writer, ["column", "row", "status", "t", "x", "y", "z", "nx", "ny", "nz"])?;
+    let (width, height) = (picture.size.width(), picture.size.height());
+    for (row, column) in (0..height).flat_map(|row| (0..width).map(move |column| (row, column))) {
+        let pixel = picture.size.offset(column, row);
+        let (point, normal) = (picture.points[pixel], picture.normals[pixel]);
+        let head = [column.to_string(), row.to_string(), status_name(picture.statuses[pixel]).to_owned()];
+        let numbers = [picture.depth[pixel], point.x, point.y, point.z, normal.x, normal.y, normal.z];
+        write_row(writer, head.into_iter().chain(numbers.map(digits)))?;
+    }
+    Ok(())
+}
+
+/// The name of a status in tables.
+pub(crate) fn status_name(status: Status) -> &'static str {
+    match status {
+        Status::Hit => "hit",
+        Status::Touch => "touch",
+        Status::Miss => "miss",
+        Status::Undecided => "undecided",
+    }
+}

@@ -1,0 +1,138 @@
+//! Values of flags, from text to types. Clap turns their errors into reports that name the flag.
+
+use std::str::FromStr;
+
+use glam::DVec3;
+use iso_grid::Region;
+use iso_render::Size;
+
+/// A finite number.
+pub(crate) fn finite(text: &str) -> Result<f64, String> {
+    let value = text.trim().parse::<f64>().map_err(|_| format!("expected a number, found `{text}`"))?;
+    if value.is_finite() { Ok(value) } else { Err(format!("expected a finite number, found {value}")) }
+}
+
+/// A finite number above zero.
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    if value > 0.0 { Ok(value) } else { Err(format!("expected a number above zero, found {value}")) }
+}
+
+/// `a,b` for the cube with these ends along every axis, or `xmin,ymin,zmin,xmax,ymax,zmax`.
+pub(crate) fn region(text: &str) -> Result<Region, String> {
+    let (min, max) = match numbers(text)?[..] {
+        [from, to] => (DVec3::splat(from), DVec3::splat(to)),
+        [x, y, z, to_x, to_y, to_z] => (DVec3::new(x, y, z), DVec3::new(to_x, to_y, to_z)),
+        ref others => {
+            return Err(format!(
+                "expected 2 numbers (from,to along every axis) or 6 (xmin,ymin,zmin,xmax,ymax,zmax), found {}",
+                others.len()
+            ));
+        }
+    };
+    Region::new(min, max).map_err(|error| error.to_string())
+}
+
+/// `x,y,z`.
+pub(crate) fn vector(text: &str) -> Result<DVec3, String> {
+    match numbers(text)?[..] {
+        [x, y, z] => Ok(DVec3::new(x, y, z)),
+        ref others => Err(format!("expected 3 numbers (x,y,z), found {}", others.len())),
+    }
+}
+
+/// `n` for the same count along every axis, or `i,j,k`.
+pub(crate) fn counts(text: &str) -> Result<[u32; 3], String> {
+    let counts = text.split(',').map(count).collect::<Result<Vec<_>, _>>()?;
+    match counts[..] {
+        [same] => Ok([same; 3]),
+        [i, j, k] => Ok([i, j, k]),
+        ref others => Err(format!("expected 1 count or 3 (i,j,k), found {}", others.len())),
+    }
+}
+
+fn count(text: &str) -> Result<u32, String> {
+    text.trim().parse().map_err(|_| format!("expected a whole number up to {}, found `{text}`", u32::MAX))
+}
+
+fn numbers(text: &str) -> Result<Vec<f64>, String> {
+    text.split(',').map(finite).collect()
+}
+
+/// `widthxheight` in pixels, or one number for a square.
+pub(crate) fn size(text: &str) -> Result<Size, String> {
+    let (width, height) = text.split_once(['x', 'X', '×']).unwrap_or((text, text));
+    Size::new(count(width)?, count(height)?).map_err(|error| error.to_string())
+}
+
+/// A value for a parameter of the formula.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Setting {
+    /// The parameter's name.
+    pub(crate) name: String,
+    /// Its value.
+    pub(crate) value: f64,
+}
+
+impl FromStr for Setting {
+    type Err = String;
+
+    /// `name=value`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, value) =
+            text.split_once('=').ok_or_else(|| format!("expected name=number, found `{text}`"))?;
+        match name.trim() {
+            "" => Err("expected name=number, but the name is missing".to_owned()),
+            name => Ok(Self { name: name.to_owned(), value: finite(value)? }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_region_is_two_numbers_or_six() {
+        let cube = region("-2,2").unwrap();
+        assert_eq!((cube.min(), cube.max()), (DVec3::splat(-2.0), DVec3::splat(2.0)));
+        let long = region("-1, -2,-3 ,4,5,6").unwrap();
+        assert_eq!((long.min(), long.max()), (DVec3::new(-1.0, -2.0, -3.0), DVec3::new(4.0, 5.0, 6.0)));
+        for wrong in ["", "1", "1,2,3", "2,-2", "0,inf", "a,b", "0,0", "1,2,3,4,5,6,7"] {
+            assert!(region(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn counts_are_one_or_three() {
+        assert_eq!(counts("30"), Ok([30, 30, 30]));
+        assert_eq!(counts("30,30, 20"), Ok([30, 30, 20]));
+        for wrong in ["", "-1", "1,2", "1.5", "99999999999"] {
+            assert!(counts(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_size_is_one_number_or_two() {
+        let plain = |text| size(text).map(|size| (size.width(), size.height()));
+        assert_eq!(plain("64"), Ok((64, 64)));
+        assert_eq!(plain("640x480"), Ok((640, 480)));
+        for wrong in ["", "0x4", "4x", "4x4x4", "-4x4", "1e3x1e3", "99999x99999"] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_setting_is_a_name_and_a_finite_number() {
+        assert_eq!("a=-.5".parse(), Ok(Setting { name: "a".to_owned(), value: -0.5 }));
+        for wrong in ["", "a", "=1", "a=", "a=b", "a=nan", "a=inf"] {
+            assert!(wrong.parse::<Setting>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn numbers_that_must_be_positive_are() {
+        assert_eq!(positive("0.05"), Ok(0.05));
+        assert!(positive("0").is_err() && positive("-1").is_err() && positive("NaN").is_err());
+    }
+}

@@ -1,0 +1,127 @@
+//! `iso eval`: values at points and enclosures over boxes.
+
+use crate::harness::Case;
+
+const ENGINES: [&str; 2] = ["jit", "interp"];
+
+#[test]
+fn values_stand_in_the_order_of_the_points() {
+    let case = Case::new();
+    case.file("points.csv", "# places\nz,name,x,y\n3,a,1,2\n0,b,-1,1e-3\n");
+    for engine in ENGINES {
+        let arguments = ["eval", "x + 10y + 100z", "--points", "points.csv", "--engine", engine];
+        case.run(&arguments).exits(0).prints("value\n321\n-0.99\n");
+    }
+}
+
+#[test]
+fn gradients_stand_beside_the_values() {
+    let case = Case::new();
+    case.file("points.csv", "x,y,z\n1,2,3\n0,0,0\n");
+    for engine in ENGINES {
+        let arguments =
+            ["eval", "x^2 y + sqrt(z)", "--points", "points.csv", "--gradient", "--engine", engine];
+        let table = case.run(&arguments).exits(0).stdout();
+        let rows: Vec<&str> = table.lines().collect();
+        assert_eq!(rows[0], "value,dx,dy,dz");
+        assert_eq!(rows[1], "3.732050807568877,4,1,0.2886751345948129");
+        assert!(rows[2].starts_with("0,0,0,"), "{}", rows[2]);
+    }
+}
+
+#[test]
+fn an_equation_is_its_left_side_minus_its_right_side() {
+    let case = Case::new();
+    case.file("points.csv", "x,y,z\n5,3,0\n");
+    case.run(&["eval", "x = y", "--points", "points.csv"]).exits(0).prints("value\n2\n");
+}
+
+#[test]
+fn digits_read_back_to_the_same_float() {
+    let case = Case::new();
+    let values = [0.1, 1.0 / 3.0, -1e300, 5e-324, f64::MAX, -0.0, 123_456_789.123_456_78, 1e22];
+    let rows: String = values.iter().map(|value| format!("{value:e},0,0\n")).collect();
+    case.file("points.csv", format!("x,y,z\n{rows}nan,0,0\ninf,0,0\n"));
+    let table = case.run(&["eval", "x", "--points", "points.csv"]).exits(0).stdout();
+    let read: Vec<f64> = table.lines().skip(1).map(|line| line.parse().unwrap()).collect();
+    for (value, read) in values.iter().zip(&read) {
+        assert_eq!(value.to_bits(), read.to_bits(), "{value} {read}");
+    }
+    assert!(read[values.len()].is_nan() && read[values.len() + 1] == f64::INFINITY);
+}
+
+#[test]
+fn enclosures_carry_decorations() {
+    let case = Case::new();
+    case.file(
+        "boxes.csv",
+        "x_lo,x_hi,y_lo,y_hi,z_lo,z_hi\n1,2,0,0,0,0\n-1,1,0,0,0,0\n-2,-1,0,0,0,0\n0,inf,0,0,0,0\n-inf,inf,0,0,0,0\n",
+    );
+    for engine in ENGINES {
+        case.run(&["eval", "sqrt(x)", "--boxes", "boxes.csv", "--engine", engine]).exits(0).prints(
+            "lo,hi,decoration\n1,1.4142135623730951,com\n0,1,trv\nempty,empty,trv\n0,inf,dac\n0,inf,trv\n",
+        );
+    }
+}
+
+#[test]
+fn enclosures_of_derivatives_hold_them() {
+    let case = Case::new();
+    case.file("boxes.csv", "x_lo,x_hi,y_lo,y_hi,z_lo,z_hi\n1,2,3,4,-1,1\n");
+    let arguments = ["eval", "x^2 + x y", "--boxes", "boxes.csv", "--gradient", "-o", "out.csv"];
+    case.run(&arguments).exits(0).prints("");
+    let table = String::from_utf8(case.content("out.csv")).unwrap();
+    let (header, row) = table.split_once('\n').unwrap();
+    assert_eq!(
+        header,
+        "lo,hi,decoration,dx_lo,dx_hi,dx_decoration,dy_lo,dy_hi,dy_decoration,dz_lo,dz_hi,dz_decoration"
+    );
+    let fields: Vec<&str> = row.trim_end().split(',').collect();
+    let holds = |place: usize, least: f64, greatest: f64| {
+        let ends: [f64; 2] = [fields[place].parse().unwrap(), fields[place + 1].parse().unwrap()];
+        assert!(ends[0] <= least && greatest <= ends[1], "{ends:?} should hold [{least}, {greatest}]");
+    };
+    holds(0, 4.0, 12.0);
+    holds(3, 5.0, 8.0);
+    holds(6, 1.0, 2.0);
+    holds(9, 0.0, 0.0);
+}
+
+#[test]
+fn wrong_tables_say_where_and_exit_with_1() {
+    let case = Case::new();
+    case.file("no_z.csv", "x,y\n1,2\n");
+    case.file("word.csv", "x,y,z\n1,2,3\n1,two,3\n");
+    case.file("short.csv", "x,y,z\n1,2\n");
+    case.file("empty.csv", "# nothing\n");
+    case.file("bytes.csv", b"x,y,z\n\xff\xfe,0,0\n");
+    case.file("crossed.csv", "x_lo,x_hi,y_lo,y_hi,z_lo,z_hi\n0,1,2,1,0,1\n");
+    for (flag, name, report) in [
+        ("--points", "no_z.csv", "error: no_z.csv:1: there is no column `z`; the columns are x,y\n"),
+        ("--points", "word.csv", "error: word.csv:3: column `y`: expected a number, found `two`\n"),
+        (
+            "--points",
+            "short.csv",
+            "error: short.csv:2: column `z` is missing, for the row has only 2 of 3 columns\n",
+        ),
+        (
+            "--points",
+            "empty.csv",
+            "error: empty.csv:1: expected a first line that names the columns x,y,z, but the file is empty\n",
+        ),
+        ("--points", "bytes.csv", "error: bytes.csv:2: column `x`: expected a number, found `��`\n"),
+        ("--boxes", "crossed.csv", "error: crossed.csv:2: no number lies between y_lo = 2 and y_hi = 1\n"),
+    ] {
+        let run = case.run(&["eval", "x", flag, name, "-o", "out.csv"]);
+        run.exits(1).prints("").reports(report);
+    }
+    case.run(&["eval", "x", "--points", "missing.csv"]).exits(1).mentions("missing.csv:1: cannot be read");
+    assert!(!case.names().contains(&"out.csv".to_owned()));
+}
+
+#[test]
+fn tables_come_from_standard_input() {
+    let case = Case::new();
+    let run = case.run_with_input(&["eval", "x y z", "--points", "-"], b"x,y,z\n2,3,4\n");
+    run.exits(0).prints("value\n24\n");
+}

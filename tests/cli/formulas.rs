@@ -1,0 +1,144 @@
+//! Formulas from everywhere, and what is said about wrong ones.
+
+use std::ffi::{OsStr, OsString};
+
+use crate::harness::{Case, Run};
+
+fn render<A: AsRef<OsStr>>(case: &Case, formula: A, more: &[&str]) -> Run {
+    let small = ["--size", "16", "--method", "grid", "--grid", "8", "-q"];
+    let mut arguments: Vec<OsString> = vec!["render".into(), formula.as_ref().into()];
+    arguments.extend(small.iter().chain(more).map(OsString::from));
+    case.run_with_input(&arguments, b"x^2 + y^2 + z^2 = 1\n")
+}
+
+#[test]
+fn a_formula_comes_from_the_argument_a_file_or_standard_input() {
+    let case = Case::new();
+    case.file("sphere.txt", "# a sphere\nx^2 + y^2 +\n  z^2 = 1\n");
+    for (formula, output) in [
+        ("x^2 + y^2 + z^2 = 1", "a.png"),
+        ("@sphere.txt", "b.png"),
+        ("-", "c.png"),
+        ("-x^2 - y^2 - z^2 = -1", "d.png"),
+    ] {
+        render(&case, formula, &["-o", output]).exits(0).reports("");
+    }
+    assert_eq!(case.content("a.png"), case.content("b.png"));
+    assert_eq!(case.content("a.png"), case.content("c.png"));
+}
+
+#[test]
+fn parameters_are_set_on_the_command_line() {
+    let case = Case::new();
+    let formula = "a := 1; x^2 + y^2 + z^2 = a";
+    render(&case, formula, &["--set", "a=2", "-o", "set.png"]).exits(0);
+    render(&case, "x^2 + y^2 + z^2 = 2", &["-o", "written.png"]).exits(0);
+    render(&case, formula, &["-o", "default.png"]).exits(0);
+    assert_eq!(case.content("set.png"), case.content("written.png"));
+    assert_ne!(case.content("set.png"), case.content("default.png"));
+    render(&case, formula, &["--set", "b=2"]).exits(2).mentions("no parameter `b`");
+}
+
+#[test]
+fn a_level_belongs_to_an_expression() {
+    let case = Case::new();
+    render(&case, "x^2 + y^2 + z^2", &["--level", "2", "-o", "level.png"]).exits(0);
+    render(&case, "x^2 + y^2 + z^2 = 2", &["-o", "equation.png"]).exits(0);
+    render(&case, "-x^2 - y^2 - z^2", &["--level", "-2", "-o", "negative.png"]).exits(0);
+    assert_eq!(case.content("level.png"), case.content("equation.png"));
+    render(&case, "x = 1", &["--level", "2"]).exits(2).reports(
+        "error: a level (2) is given with an equation, which needs none\n  help: the surface of left = right is where left − \
+         right = 0: leave out --level, or write (left) - (right)\n",
+    );
+}
+
+#[test]
+fn errors_stand_under_the_place() {
+    let case = Case::new();
+    for (formula, report) in [
+        (
+            "x^2 + sine(y)",
+            "\
+error: the function `sine` is unknown
+ --> formula:1:7
+  |
+1 | x^2 + sine(y)
+  |       ^^^^
+  help: did you mean `sin`?
+",
+        ),
+        (
+            "√z·x² + 2xy",
+            "\
+error: the name `xy` is unknown
+ --> formula:1:9
+  |
+1 | √z·x² + 2xy
+  |          ^^
+  help: did you mean `x*y`?
+",
+        ),
+        (
+            "a := 2\nlog(x) = a",
+            "\
+error: `log` alone does not say its base
+ --> formula:2:1
+  |
+2 | log(x) = a
+  | ^^^^^^
+  help: write `ln(x)` for base e, `log2(x)`, `log10(x)`, or `log(b, x)` for base b
+",
+        ),
+    ] {
+        render(&case, formula, &[]).exits(2).prints("").reports(report);
+    }
+}
+
+#[test]
+fn errors_in_files_name_the_file_and_the_line() {
+    let case = Case::new();
+    case.file("two.txt", "a := 2\r\nx + (y\r\n");
+    render(&case, "@two.txt", &[]).exits(2).reports(
+        "\
+error: this parenthesis is never closed
+ --> two.txt:2:5
+  |
+2 | x + (y
+  |     ^
+  help: add `)`
+",
+    );
+}
+
+#[test]
+fn huge_wrong_formulas_have_small_reports() {
+    let case = Case::new();
+    case.file("parentheses.txt", "(".repeat(10_000));
+    case.file("sum.txt", "+x".repeat(100_000) + "+?" + &"+y".repeat(100_000));
+    case.file("megabyte.txt", "+x".repeat(1 << 20));
+    for name in ["@parentheses.txt", "@sum.txt", "@megabyte.txt"] {
+        let run = render(&case, name, &[]).exits(2);
+        assert!(run.stderr().len() < 1000, "{name}: {} bytes", run.stderr().len());
+    }
+}
+
+#[test]
+fn formulas_that_are_no_text_are_refused() {
+    let case = Case::new();
+    case.file("latin1.txt", b"x + \xe9");
+    render(&case, "@latin1.txt", &[]).exits(2).mentions("not UTF-8");
+    #[cfg(unix)]
+    {
+        use std::os::unix::ffi::OsStrExt;
+        render(&case, OsStr::from_bytes(b"x + \xff"), &[]).exits(2).mentions("not UTF-8");
+    }
+    render(&case, "", &[]).exits(2).mentions("empty");
+}
+
+#[test]
+fn a_formula_that_cannot_be_read_exits_with_1() {
+    let case = Case::new();
+    render(&case, "@missing.txt", &[]).exits(1).mentions("cannot read missing.txt");
+    render(&case, "@.", &[]).exits(1);
+    assert!(case.names().is_empty());
+}

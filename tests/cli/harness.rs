@@ -1,0 +1,134 @@
+//! Runs `iso` in a private folder and tells all about a run that is not as expected.
+
+use std::ffi::OsStr;
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+use tempfile::TempDir;
+
+/// A folder of its own, in which commands run.
+pub(crate) struct Case {
+    folder: TempDir,
+}
+
+impl Case {
+    /// An empty folder.
+    pub(crate) fn new() -> Self {
+        Self { folder: tempfile::tempdir().expect("a temporary folder can be made") }
+    }
+
+    /// Writes a file into the folder.
+    pub(crate) fn file(&self, name: &str, content: impl AsRef<[u8]>) -> &Self {
+        std::fs::write(self.path(name), content).expect("a file can be written");
+        self
+    }
+
+    /// The path of a name in the folder.
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// The content of a file of the folder.
+    pub(crate) fn content(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path(name)).unwrap_or_else(|error| panic!("{name} cannot be read: {error}"))
+    }
+
+    /// The names in the folder, sorted.
+    pub(crate) fn names(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.folder.path()).expect("the folder can be listed");
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    /// Runs `iso` with arguments.
+    pub(crate) fn run<A: AsRef<OsStr>>(&self, arguments: &[A]) -> Run {
+        self.run_with_input(arguments, b"")
+    }
+
+    /// Runs `iso` with arguments and something to read on standard input.
+    pub(crate) fn run_with_input<A: AsRef<OsStr>>(&self, arguments: &[A], input: &[u8]) -> Run {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_iso"));
+        command.args(arguments).current_dir(self.folder.path());
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().expect("iso can be started");
+        // A run that fails early does not read its input: that is no error of the test.
+        let _ = child.stdin.take().expect("standard input is piped").write_all(input);
+        let output = child.wait_with_output().expect("iso ends");
+        Run { command: format!("{command:?}"), output }
+    }
+}
+
+/// A run that ended.
+pub(crate) struct Run {
+    command: String,
+    output: Output,
+}
+
+impl Run {
+    /// Expects an exit code.
+    #[track_caller]
+    pub(crate) fn exits(self, code: i32) -> Self {
+        if self.output.status.code() != Some(code) {
+            self.fail(&format!("expected the exit code {code}"));
+        }
+        self
+    }
+
+    /// Standard output.
+    pub(crate) fn stdout(&self) -> String {
+        String::from_utf8_lossy(&self.output.stdout).into_owned()
+    }
+
+    /// Standard error.
+    pub(crate) fn stderr(&self) -> String {
+        String::from_utf8_lossy(&self.output.stderr).into_owned()
+    }
+
+    /// Expects exactly this on standard output.
+    #[track_caller]
+    pub(crate) fn prints(self, expected: &str) -> Self {
+        if self.stdout() != expected {
+            self.fail(&format!("expected on standard output:\n{expected}"));
+        }
+        self
+    }
+
+    /// Expects exactly this on standard error.
+    #[track_caller]
+    pub(crate) fn reports(self, expected: &str) -> Self {
+        if self.stderr() != expected {
+            self.fail(&format!("expected on standard error:\n{expected}"));
+        }
+        self
+    }
+
+    /// Expects standard error to hold this.
+    #[track_caller]
+    pub(crate) fn mentions(self, expected: &str) -> Self {
+        if !self.stderr().contains(expected) {
+            self.fail(&format!("expected on standard error, somewhere:\n{expected}"));
+        }
+        self
+    }
+
+    /// Expects one JSON value on standard output.
+    #[track_caller]
+    pub(crate) fn json(&self) -> serde_json::Value {
+        match serde_json::from_slice(&self.output.stdout) {
+            Ok(value) => value,
+            Err(error) => self.fail(&format!("expected JSON on standard output: {error}")),
+        }
+    }
+
+    #[track_caller]
+    fn fail(&self, expected: &str) -> ! {
+        let mut story = String::new();
+        let _ = writeln!(story, "{expected}\n\ncommand: {}\nexit: {}", self.command, self.output.status);
+        let _ = writeln!(story, "standard output:\n{}\nstandard error:\n{}", self.stdout(), self.stderr());
+        panic!("{story}");
+    }
+}

@@ -1,0 +1,10 @@
+//! Tests of the program `iso` as its users meet it: command lines in, files, text and exit codes out.
+
+mod harness;
+
+mod eval;
+mod explain;
+mod formulas;
+mod render;
+mod trace;
+mod usage;

@@ -1,0 +1,168 @@
+//! `iso render`: pictures.
+
+use crate::harness::{Case, Run};
+
+const SPHERE: &str = "x^2 + y^2 + z^2 = 1";
+const TORUS: &str = "(sqrt(x^2 + y^2) - 1.2)^2 + z^2 = 0.25";
+
+fn render(case: &Case, formula: &str, more: &[&str]) -> Run {
+    let mut arguments = vec!["render", formula, "--size", "48x32"];
+    arguments.extend(more);
+    case.run(&arguments)
+}
+
+#[test]
+fn a_picture_is_written_without_being_asked_where() {
+    let case = Case::new();
+    let run = render(&case, SPHERE, &[]).exits(0).prints("");
+    assert_eq!(case.names(), ["iso.png"]);
+    assert!(run.stderr().starts_with("iso.png: 48x32 pixels: "), "{}", run.stderr());
+    let size = image::image_dimensions(case.path("iso.png")).unwrap();
+    assert_eq!(size, (48, 32));
+}
+
+#[test]
+fn quiet_runs_say_nothing() {
+    render(&Case::new(), SPHERE, &["--quiet"]).exits(0).prints("").reports("");
+}
+
+#[test]
+fn every_format_can_be_written() {
+    let case = Case::new();
+    for extension in ["png", "jpg", "webp", "tif", "bmp", "ppm", "qoi", "PNG"] {
+        let name = format!("out.{extension}");
+        render(&case, SPHERE, &["-o", &name, "-q"]).exits(0);
+        assert!(!case.content(&name).is_empty());
+    }
+}
+
+#[test]
+fn the_picture_shows_the_sphere() {
+    let case = Case::new();
+    let ortho = ["--ortho", "--view-width", "4", "--size", "200x200", "--json"];
+    let mut arguments = vec!["render", SPHERE];
+    arguments.extend(ortho);
+    let json = case.run(&arguments).exits(0).json();
+    let hits = json["pixels"]["hit"].as_f64().unwrap() + json["pixels"]["touch"].as_f64().unwrap();
+    // The disk of radius 50 pixels has this area; a pixel's middle decides whether the pixel counts.
+    let area = std::f64::consts::PI * 2500.0;
+    assert!((hits - area).abs() < 30.0, "{hits} pixels of {area}");
+    assert_eq!(json["pixels"]["undecided"], 0);
+}
+
+#[test]
+fn the_report_has_its_keys() {
+    let case = Case::new();
+    for method in ["certified", "grid", "octree", "direct"] {
+        let json = render(&case, SPHERE, &["--json", "--method", method]).exits(0).reports("").json();
+        assert_eq!(
+            (&json["width"], &json["height"], &json["method"]),
+            (&48.into(), &32.into(), &method.into())
+        );
+        for phase in ["parse", "compile", "preprocess", "trace", "shade", "encode"] {
+            assert!(json["milliseconds"][phase].as_f64().unwrap() >= 0.0, "{phase}");
+        }
+        let pixels =
+            ["hit", "touch", "miss", "undecided"].map(|status| json["pixels"][status].as_u64().unwrap());
+        assert_eq!(pixels.iter().sum::<u64>(), 48 * 32);
+        assert_eq!(json["counters"]["rays"], 48 * 32);
+    }
+}
+
+#[test]
+fn the_picture_is_the_same_on_any_threads_and_engine() {
+    let case = Case::new();
+    for method in ["certified", "grid", "octree", "direct"] {
+        for (engine, threads) in [("jit", "1"), ("jit", "2"), ("interp", "1"), ("interp", "2")] {
+            let name = format!("{method}-{engine}-{threads}.ppm");
+            let flags = [
+                "--method",
+                method,
+                "--engine",
+                engine,
+                "--threads",
+                threads,
+                "-o",
+                &name,
+                "--size",
+                "100x80",
+            ];
+            case.run(&[&["render", TORUS, "-q"][..], &flags].concat()).exits(0);
+            assert_eq!(case.content(&name), case.content(&format!("{method}-jit-1.ppm")), "{name}");
+        }
+    }
+}
+
+#[test]
+fn depths_normals_and_points_are_written() {
+    let case = Case::new();
+    let flags = ["--depth", "depth.exr", "--normals", "normals.exr", "--points", "points.csv", "-q"];
+    render(&case, SPHERE, &flags).exits(0);
+    assert_eq!(case.names(), ["depth.exr", "iso.png", "normals.exr", "points.csv"]);
+    let table = String::from_utf8(case.content("points.csv")).unwrap();
+    let mut lines = table.lines();
+    assert_eq!(lines.next(), Some("column,row,status,t,x,y,z,nx,ny,nz"));
+    let mut hits = 0;
+    for line in lines {
+        let fields: Vec<&str> = line.split(',').collect();
+        let numbers: Vec<f64> = fields[3..].iter().map(|field| field.parse().unwrap()).collect();
+        match fields[2] {
+            "hit" => {
+                let radius = numbers[1].hypot(numbers[2]).hypot(numbers[3]);
+                assert!((radius - 1.0).abs() < 1e-9, "{line}");
+                assert!((0..3).all(|axis| (numbers[4 + axis] - numbers[1 + axis]).abs() < 1e-9), "{line}");
+                hits += 1;
+            }
+            "miss" => assert!(numbers.iter().all(|number| number.is_nan()), "{line}"),
+            other => panic!("a sphere has no pixel that is {other}"),
+        }
+    }
+    assert!(hits > 100, "{hits} hits");
+}
+
+#[test]
+fn statuses_are_shown_when_asked() {
+    let case = Case::new();
+    let double = "(x^2 + y^2 + z^2 - 1)^2 = 0";
+    render(&case, double, &["-o", "plain.ppm", "-q"]).exits(0);
+    render(&case, double, &["-o", "shown.ppm", "-q", "--show-status"]).exits(0);
+    assert_ne!(case.content("plain.ppm"), case.content("shown.ppm"));
+}
+
+#[test]
+fn outputs_that_cannot_be_written_are_known_before_the_work() {
+    let case = Case::new();
+    let unknown = render(&case, SPHERE, &["-o", "out.txt", "--size", "20000x20000"]);
+    unknown.exits(2).mentions("names no picture format");
+    render(&case, SPHERE, &["-o", "noextension"]).exits(2);
+    render(&case, SPHERE, &["--depth", "depth.png"]).exits(2).mentions("--depth writes .exr files");
+    let missing = render(&case, SPHERE, &["-o", "missing/out.png", "--size", "20000x20000"]);
+    missing.exits(1).mentions("cannot write missing/out.png");
+    std::fs::create_dir(case.path("folder.png")).unwrap();
+    render(&case, SPHERE, &["-o", "folder.png"]).exits(1).mentions("it is a directory");
+    assert_eq!(case.names(), ["folder.png"]);
+}
+
+#[test]
+fn a_failed_run_leaves_the_old_picture() {
+    let case = Case::new();
+    case.file("out.png", "the old one");
+    render(&case, "x + (", &["-o", "out.png"]).exits(2);
+    render(&case, SPHERE, &["-o", "out.png", "--points", "missing/points.csv"]).exits(1);
+    assert_eq!(case.content("out.png"), b"the old one");
+    render(&case, SPHERE, &["-o", "out.png"]).exits(0);
+    assert_ne!(case.content("out.png"), b"the old one");
+    assert_eq!(case.names(), ["out.png"]);
+}
+
+#[test]
+fn cameras_can_stand_anywhere() {
+    let case = Case::new();
+    let plain = ["-o", "a.ppm", "-q", "--yaw", "0", "--pitch", "0", "--distance", "6"];
+    render(&case, TORUS, &plain).exits(0);
+    render(&case, TORUS, &["-o", "b.ppm", "-q", "--eye", "0,-6,0"]).exits(0);
+    assert_eq!(case.content("a.ppm"), case.content("b.ppm"));
+    render(&case, TORUS, &["--eye", "0,0,-6", "--up", "0,0,1"]).exits(2).mentions("up direction");
+    render(&case, TORUS, &["--eye", "1,1,1", "--yaw", "-3"]).exits(2).mentions("--yaw");
+    render(&case, TORUS, &["--yaw", "-30", "--pitch", "-20", "-q"]).exits(0);
+}

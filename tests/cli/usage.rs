@@ -1,0 +1,79 @@
+//! Help, completions, and command lines that make no sense.
+
+use crate::harness::Case;
+
+const COMMANDS: [&str; 6] = ["render", "eval", "trace", "explain", "bench", "completions"];
+
+#[test]
+fn every_command_has_help_with_examples() {
+    let case = Case::new();
+    for command in COMMANDS {
+        for help in ["-h", "--help"] {
+            let text = case.run(&[command, help]).exits(0).stdout();
+            assert!(text.contains("Examples:\n  iso "), "{command} {help}:\n{text}");
+        }
+    }
+    let text = case.run(&["--help"]).exits(0).stdout();
+    assert!(COMMANDS.iter().all(|command| text.contains(command)), "{text}");
+    assert!(case.names().is_empty());
+}
+
+#[test]
+fn the_version_is_the_packages() {
+    Case::new().run(&["--version"]).exits(0).prints(concat!("iso ", env!("CARGO_PKG_VERSION"), "\n"));
+}
+
+#[test]
+fn completions_exist_for_every_shell() {
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let script = Case::new().run(&["completions", shell]).exits(0).stdout();
+        assert!(script.contains("render") && script.contains("show-status"), "{shell}");
+    }
+}
+
+#[test]
+fn bad_usage_exits_with_2() {
+    let case = Case::new();
+    let wrong: [&[&str]; 22] = [
+        &[],
+        &["draw"],
+        &["render"],
+        &["render", "x", "y"],
+        &["render", "x", "--box", "1,2,3"],
+        &["render", "x", "--box", "2,-2"],
+        &["render", "x", "--box", "0,inf"],
+        &["render", "x", "--size", "0x10"],
+        &["render", "x", "--size", "99999x99999"],
+        &["render", "x", "--level", "high"],
+        &["render", "x", "--set", "a"],
+        &["render", "x", "--engine", "fpga"],
+        &["render", "x", "--method", "guess"],
+        &["render", "x", "--method", "grid", "--grid", "0"],
+        &["render", "x", "--method", "grid", "--grid", "4000000000"],
+        &["render", "x", "--method", "grid", "--step", "0"],
+        &["render", "x", "--threads", "-1"],
+        &["render", "x", "--fov", "180"],
+        &["render", "x", "--view-width", "3"],
+        &["eval", "x"],
+        &["eval", "x", "--points", "a.csv", "--boxes", "b.csv"],
+        &["trace", "x"],
+    ];
+    for arguments in wrong {
+        let run = case.run(arguments).exits(2);
+        assert!(run.stdout().is_empty(), "{arguments:?}: {}", run.stdout());
+        assert!(!run.stderr().is_empty(), "{arguments:?}");
+    }
+    assert!(case.names().is_empty(), "{:?}", case.names());
+}
+
+#[test]
+fn settings_of_another_method_are_refused() {
+    Case::new().run(&["render", "x", "--grid", "30"]).exits(2).reports(
+        "error: --grid has no meaning for the method certified\n  help: leave it out, or choose --method grid or octree\n",
+    );
+    for flags in [["--method", "direct", "--grid", "30"], ["--method", "grid", "--accuracy", "1e-6"]] {
+        let mut arguments = vec!["render", "x"];
+        arguments.extend(flags);
+        Case::new().run(&arguments).exits(2).mentions("has no meaning for the method");
+    }
+}
