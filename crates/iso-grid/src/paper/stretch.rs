@@ -11,6 +11,8 @@ pub(crate) struct Stretch {
     pub(crate) span: Span,
     /// How many steps, at least 1.
     pub(crate) steps: u32,
+    /// How long a step is, in t.
+    width: f64,
 }
 
 impl Stretch {
@@ -50,6 +52,6 @@ impl Spacing {
         let distances = ((span.end - span.start) * direction / self.distance).length();
         // A region too small for doubles to measure gives no number here, and one step.
         let steps = if distances > 1.0 { distances.ceil().min(self.most_steps) as u32 } else { 1 };
-        Stretch { span, steps }
+        Stretch { span, steps, width: (span.end - span.start) / f64::from(steps) }
     }
 }
