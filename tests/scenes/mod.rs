@@ -1,5 +1,7 @@
 //! The scenes of `testdata/oracle` and their rays, whose ends an independent program decided (`tools/oracle/README.md`).
 
+pub(crate) mod rounding;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
