@@ -11,7 +11,6 @@ use crate::batch::{BatchBlueprint, NativeBatch};
 use crate::code::Compiled;
 use crate::host;
 use crate::point::{FunctionBlueprint, NativeFunction, NativePoint, PointBlueprint};
-use crate::powers::expanded;
 
 /// The engine's name on the command line and in reports.
 pub(crate) const NAME: &str = "jit";
@@ -46,7 +45,7 @@ impl Jit {
 
     /// The program as kernels of values compute it, if it is not too large.
     fn admitted(&self, program: &Program) -> Result<Program, CompileError> {
-        Ok(expanded(program))
+        Ok(program.with_powers_expanded())
     }
 }
 

@@ -16,7 +16,6 @@ mod engine;
 mod host;
 mod lanes;
 mod point;
-mod powers;
 mod symbols;
 mod values;
 

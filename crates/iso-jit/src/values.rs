@@ -32,13 +32,10 @@ pub(crate) fn evaluate(
     program: &Program,
     arguments: &[[Value; 3]],
 ) -> Vec<Vec<Value>> {
-    let live = live_nodes(program);
-    // The value of each node in each evaluation; nodes that no output needs are left out.
     let mut values: Vec<Vec<Value>> = vec![Vec::with_capacity(program.nodes().len()); arguments.len()];
-    for ((_, node), live) in program.iter().zip(live) {
+    for node in program.nodes() {
         for (values, arguments) in values.iter_mut().zip(arguments) {
             let value = match node {
-                _ if !live => arguments[0],
                 Node::Variable(axis) => arguments[*axis as usize],
                 Node::Constant(constant) => writer.constant(constant.value()),
                 Node::Apply(operation, operands) => {
@@ -51,22 +48,6 @@ pub(crate) fn evaluate(
     }
     let outputs = |values: Vec<Value>| program.outputs().iter().map(|id| values[id.index()]).collect();
     values.into_iter().map(outputs).collect()
-}
-
-/// Which nodes the outputs need.
-pub(crate) fn live_nodes(program: &Program) -> Vec<bool> {
-    let mut live = vec![false; program.nodes().len()];
-    for id in program.outputs() {
-        live[id.index()] = true;
-    }
-    for (id, node) in program.iter().rev() {
-        if live[id.index()] {
-            for operand in node.operands() {
-                live[operand.index()] = true;
-            }
-        }
-    }
-    live
 }
 
 /// Writes one operation. Only as many operands as its arity count.
