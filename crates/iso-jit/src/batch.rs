@@ -14,12 +14,15 @@ use crate::values;
 /// The points of one pair of lanes.
 const PAIR: usize = 2;
 
-/// Pairs of lanes in one round of the loop, for programs short enough to keep all of them in registers. Several
-/// independent evaluations hide the latency of each.
-const PAIRS_WHEN_SHORT: usize = 4;
+/// The most pairs of lanes in one round of the loop.
+const MOST_PAIRS: usize = 4;
 
 /// The most points in one round.
-const WIDEST: usize = PAIR * PAIRS_WHEN_SHORT;
+const WIDEST: usize = PAIR * MOST_PAIRS;
+
+/// The most operations of a program that is evaluated for several pairs of lanes at once, for longer code takes longer to
+/// compile.
+const LARGEST_SIDE_BY_SIDE: usize = 400;
 
 /// x, y and z of `count` points, where the outputs go, and `count`, which is not less than the points of one round.
 type Evaluate = unsafe extern "C" fn(*const f64, *const f64, *const f64, *mut f64, usize);
@@ -79,10 +82,7 @@ pub(crate) struct BatchBlueprint<'a> {
 
 impl<'a> BatchBlueprint<'a> {
     pub(crate) fn new(program: &'a Program) -> Self {
-        let calls =
-            |node: &Node| matches!(node, Node::Apply(operation, _) if !values::is_written_out(*operation));
-        let pairs = if program.nodes().iter().any(calls) { 1 } else { PAIRS_WHEN_SHORT };
-        Self { program, pairs }
+        Self { program, pairs: if gains_from_pairs(program) { MOST_PAIRS } else { 1 } }
     }
 
     /// Points in one round.
@@ -157,4 +157,24 @@ impl BatchBlueprint<'_> {
             address = writer.builder.ins().iadd(address, stride);
         }
     }
+}
+
+/// Whether evaluating several pairs of lanes side by side is quicker than one after the other: where operations wait for
+/// each other. Where many of them could go on at the same time the processor is busy with one pair, and several lack
+/// registers. Where functions are called, they take most of the time.
+///
+/// Measured: a chain of 300 operations takes 16 instead of 43 ns a point, a polynomial of 15 operations 0.72 instead of
+/// 0.82; but its gradient, 28 operations no more than 9 deep, 3.1 instead of 1.9.
+fn gains_from_pairs(program: &Program) -> bool {
+    let mut depths: Vec<usize> = Vec::with_capacity(program.nodes().len());
+    for node in program.nodes() {
+        if let Node::Apply(operation, _) = node
+            && !values::is_written_out(*operation)
+        {
+            return false;
+        }
+        depths.push(node.operands().iter().map(|operand| depths[operand.index()] + 1).max().unwrap_or(0));
+    }
+    let deepest = depths.into_iter().max().unwrap_or(0);
+    program.operations() <= LARGEST_SIDE_BY_SIDE.min(3 * deepest)
 }

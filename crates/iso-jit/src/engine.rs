@@ -4,12 +4,11 @@ use std::fmt;
 use std::sync::Arc;
 
 use cranelift_codegen::Context;
-use cranelift_codegen::isa::TargetIsa;
 use iso_expr::{BatchKernel, BoxKernel, CompileError, Engine, PointKernel, Program};
 
 use crate::batch::{BatchBlueprint, NativeBatch};
 use crate::code::Compiled;
-use crate::host;
+use crate::host::Host;
 use crate::point::{FunctionBlueprint, NativeFunction, NativePoint, PointBlueprint};
 
 /// The engine's name on the command line and in reports.
@@ -18,7 +17,7 @@ pub(crate) const NAME: &str = "jit";
 /// Compiles programs to native code. Threads may share it, and compile at the same time.
 #[derive(Clone)]
 pub struct Jit {
-    isa: Arc<dyn TargetIsa>,
+    host: Host,
 }
 
 impl Jit {
@@ -27,7 +26,7 @@ impl Jit {
     /// # Errors
     /// When the code generator does not support the machine.
     pub fn new() -> Result<Self, CompileError> {
-        Ok(Self { isa: host::instruction_set()? })
+        Ok(Self { host: Host::new()? })
     }
 
     /// The one output of `program` as a native function.
@@ -39,13 +38,9 @@ impl Jit {
     /// When the program has another number of outputs.
     pub fn function(&self, program: &Program) -> Result<NativeFunction, CompileError> {
         assert_eq!(program.outputs().len(), 1, "a function has one output");
-        let program = self.admitted(program)?;
-        Ok(NativeFunction(Compiled::new(&self.isa, &mut Context::new(), &FunctionBlueprint(&program))?))
-    }
-
-    /// The program as kernels of values compute it, if it is not too large.
-    fn admitted(&self, program: &Program) -> Result<Program, CompileError> {
-        Ok(program.with_powers_expanded())
+        let program = program.with_powers_expanded();
+        let isa = self.host.admit(&program)?;
+        Ok(NativeFunction(Compiled::new(isa, &mut Context::new(), &FunctionBlueprint(&program))?))
     }
 }
 
@@ -55,15 +50,17 @@ impl Engine for Jit {
     }
 
     fn point(&self, program: &Program) -> Result<Arc<dyn PointKernel>, CompileError> {
-        let program = self.admitted(program)?;
-        let compiled = Compiled::new(&self.isa, &mut Context::new(), &PointBlueprint(&program))?;
+        let program = program.with_powers_expanded();
+        let isa = self.host.admit(&program)?;
+        let compiled = Compiled::new(isa, &mut Context::new(), &PointBlueprint(&program))?;
         Ok(Arc::new(NativePoint::new(&program, compiled)))
     }
 
     fn batch(&self, program: &Program) -> Result<Arc<dyn BatchKernel>, CompileError> {
-        let program = self.admitted(program)?;
+        let program = program.with_powers_expanded();
+        let isa = self.host.admit(&program)?;
         let blueprint = BatchBlueprint::new(&program);
-        let compiled = Compiled::new(&self.isa, &mut Context::new(), &blueprint)?;
+        let compiled = Compiled::new(isa, &mut Context::new(), &blueprint)?;
         Ok(Arc::new(NativeBatch::new(&blueprint, compiled)))
     }
 
@@ -74,6 +71,6 @@ impl Engine for Jit {
 
 impl fmt::Debug for Jit {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.debug_struct("Jit").field("target", &self.isa.triple().to_string()).finish()
+        formatter.debug_struct("Jit").field("target", &self.host.name()).finish()
     }
 }

@@ -1,126 +1,90 @@
-//! Native values against the values of the table of operations, bit for bit.
+//! Native values against the interpreter's, bit for bit.
 
 use iso_expr::engine::Points;
-use iso_expr::{Axis, Engine, Node, NodeId, Operation, Program, Scratch, Value};
+use iso_expr::random::Random;
+use iso_expr::{Axis, Engine, Interpreter, Operation, Program, Scratch};
 use iso_jit::Jit;
-use proptest::prelude::*;
-use proptest::sample::{Index, select};
-
-/// Arguments of every kind: zeros, ordinary, huge, tiny and subnormal numbers, infinities, NaN.
-const TELLING: [f64; 24] = [
-    0.0,
-    -0.0,
-    1.0,
-    -1.0,
-    0.5,
-    -0.5,
-    1.5,
-    2.5,
-    -2.5,
-    3.0,
-    -7.25,
-    0.1,
-    1e-3,
-    100.0,
-    1e15,
-    -4503599627370497.5,
-    1e200,
-    -1e300,
-    f64::MAX,
-    1e-310,
-    -5e-324,
-    f64::INFINITY,
-    f64::NEG_INFINITY,
-    f64::NAN,
-];
-
-/// What the program computes by the table of operations.
-fn expected(program: &Program, arguments: [f64; 3]) -> Vec<f64> {
-    let mut values: Vec<f64> = Vec::new();
-    for node in program.nodes() {
-        values.push(match node {
-            Node::Variable(axis) => arguments[*axis as usize],
-            Node::Constant(constant) => constant.value(),
-            Node::Apply(operation, operands) => {
-                let [a, b, c] = operands.map(|id| values[id.index()]);
-                match operation.value() {
-                    Value::Unary(function) => function(a),
-                    Value::Binary(function) => function(a, b),
-                    Value::Ternary(function) => function(a, b, c),
-                }
-            }
-        });
-    }
-    program.outputs().iter().map(|id| values[id.index()]).collect()
-}
 
 /// The bits, any NaN counting as one.
 fn bits(values: &[f64]) -> Vec<u64> {
     values.iter().map(|value| if value.is_nan() { f64::NAN } else { *value }.to_bits()).collect()
 }
 
-/// Checks the point kernel and the batch kernel at all `points` at once.
+/// Checks the point kernel at each of `points`, and the batch kernel at all of them at once, against the interpreter.
 fn check(program: &Program, points: &[[f64; 3]]) {
-    let jit = Jit::new().unwrap();
+    let (jit, interpreter) = (Jit::new().unwrap(), Interpreter);
     let mut scratch = Scratch::default();
     let outputs = program.outputs().len();
-    let expected: Vec<_> = points.iter().map(|point| expected(program, *point)).collect();
 
-    let kernel = jit.point(program).unwrap();
-    for (point, expected) in points.iter().zip(&expected) {
-        let mut values = vec![0.0; outputs];
-        kernel.evaluate(&mut scratch, point[0], point[1], point[2], &mut values);
-        assert_eq!(bits(&values), bits(expected), "{values:?} is not {expected:?} at {point:?}");
+    let (native, reference) = (jit.point(program).unwrap(), interpreter.point(program).unwrap());
+    let mut expected = Vec::new();
+    for point @ [x, y, z] in points {
+        let (mut value, mut right) = (vec![0.0; outputs], vec![0.0; outputs]);
+        native.evaluate(&mut scratch, *x, *y, *z, &mut value);
+        reference.evaluate(&mut scratch, *x, *y, *z, &mut right);
+        assert_eq!(bits(&value), bits(&right), "{value:?} is not {right:?} at {point:?} in\n{program}");
+        expected.push(right);
     }
 
-    let kernel = jit.batch(program).unwrap();
     let [x, y, z] = [0, 1, 2].map(|axis| points.iter().map(|point| point[axis]).collect::<Vec<_>>());
     let mut values = vec![0.0; outputs * points.len()];
-    kernel.evaluate(&mut scratch, Points { x: &x, y: &y, z: &z }, &mut values);
-    for (place, expected) in expected.iter().enumerate() {
-        let values: Vec<_> = (0..outputs).map(|output| values[output * points.len() + place]).collect();
-        assert_eq!(bits(&values), bits(expected), "{values:?} is not {expected:?} at {:?}", points[place]);
+    jit.batch(program).unwrap().evaluate(&mut scratch, Points { x: &x, y: &y, z: &z }, &mut values);
+    for (place, right) in expected.iter().enumerate() {
+        let value: Vec<_> = (0..outputs).map(|output| values[output * points.len() + place]).collect();
+        let point = points[place];
+        assert_eq!(
+            bits(&value),
+            bits(right),
+            "{value:?} is not {right:?} at {point:?} in a batch of\n{program}"
+        );
     }
 }
 
-/// All triples of telling numbers that begin with different ones, and some more.
-fn telling_points() -> Vec<[f64; 3]> {
-    let pairs = TELLING.iter().flat_map(|x| TELLING.iter().map(move |y| (*x, *y)));
-    pairs.enumerate().map(|(place, (x, y))| [x, y, TELLING[place * 7 % TELLING.len()]]).collect()
+/// Points with coordinates of every kind: ordinary, huge, tiny, subnormal, infinite, NaN, zeros.
+fn points(random: &mut Random, count: usize) -> Vec<[f64; 3]> {
+    (0..count).map(|_| [random.double(), random.double(), random.double()]).collect()
 }
 
 #[test]
 fn every_operation_has_its_value() {
+    let mut random = Random::new(1);
     for operation in Operation::all() {
         let mut program = Program::new();
-        let arguments = Axis::ALL.map(|axis| program.variable(axis));
+        let variables = Axis::ALL.map(|axis| program.variable(axis));
         let outputs = if operation == Operation::IntegerPower {
             [2, 3, 6, 7, 100, Operation::LARGEST_POWER]
-                .map(|exponent| program.integer_power(arguments[0], exponent))
+                .map(|exponent| program.integer_power(variables[0], exponent))
                 .to_vec()
         } else {
-            vec![program.apply(operation, &arguments[..operation.arity()])]
+            vec![program.apply(operation, &variables[..operation.arity()])]
         };
         program.set_outputs(outputs);
-        check(&program, &telling_points());
+        let mut points = points(&mut random, 400);
+        // Equal operands, and zeros of both signs.
+        points.extend((0..20).map(|_| [random.double(); 3]));
+        points.extend([[0.0, -0.0, 1.0], [-0.0, 0.0, 1.0], [f64::NAN, 1.0, 2.0], [1.0, f64::NAN, 2.0]]);
+        check(&program, &points);
     }
 }
 
 #[test]
 fn variables_constants_and_repeated_outputs_are_outputs_too() {
     let mut program = Program::new();
-    let (z, c) = (program.variable(Axis::Z), program.literal(-0.0));
-    program.set_outputs(vec![z, c, z]);
-    check(&program, &telling_points());
+    let (z, zero) = (program.variable(Axis::Z), program.literal(-0.0));
+    program.set_outputs(vec![z, zero, z]);
+    check(&program, &points(&mut Random::new(2), 10));
+    program.set_outputs(Vec::new());
+    check(&program, &points(&mut Random::new(2), 10));
 }
 
 #[test]
 fn live_values_survive_calls() {
     let mut program = Program::new();
-    let mut values: Vec<NodeId> = Axis::ALL.map(|axis| program.variable(axis)).to_vec();
+    let variables = Axis::ALL.map(|axis| program.variable(axis));
+    let mut values = variables.to_vec();
     for place in 0..60 {
         let scale = program.literal(f64::from(place) - 20.0);
-        let scaled = program.apply(Operation::Multiply, &[values[place as usize % 3], scale]);
+        let scaled = program.apply(Operation::Multiply, &[variables[place as usize % 3], scale]);
         values.push(program.apply(Operation::Sin, &[scaled]));
     }
     let mut sum = values[0];
@@ -129,48 +93,56 @@ fn live_values_survive_calls() {
         sum = program.apply(Operation::Add, &[quotient, value]);
     }
     program.set_outputs(vec![sum, values[9]]);
-    check(&program, &telling_points());
+    check(&program, &points(&mut Random::new(3), 100));
 }
 
 #[test]
 fn batches_of_any_length_agree() {
+    let points = points(&mut Random::new(4), 40);
     for operation in [Operation::Divide, Operation::Atan2] {
         let mut program = Program::new();
         let [x, y, z] = Axis::ALL.map(|axis| program.variable(axis));
         let product = program.apply(Operation::Multiply, &[x, z]);
         let quotient = program.apply(operation, &[product, y]);
         program.set_outputs(vec![quotient, product]);
-        for length in 0..=40 {
-            check(&program, &telling_points()[100..100 + length]);
+        for length in 0..=points.len() {
+            check(&program, &points[..length]);
         }
     }
 }
 
-/// A program of random operations, whose last five nodes are outputs.
-fn programs() -> impl Strategy<Value = Program> {
-    let operations: Vec<_> = Operation::all().collect();
-    let step = (select(operations), any::<[Index; 3]>(), 2..20_u32, select(&TELLING));
-    prop::collection::vec(step, 1..60).prop_map(|steps| {
-        let mut program = Program::new();
-        let mut nodes: Vec<_> = Axis::ALL.map(|axis| program.variable(axis)).to_vec();
-        for (operation, operands, exponent, constant) in steps {
-            let operands = operands.map(|index| *index.get(&nodes));
-            nodes.push(match operation {
-                Operation::IntegerPower => program.integer_power(operands[0], exponent),
-                _ => program.apply(operation, &operands[..operation.arity()]),
-            });
-            nodes.push(program.literal(constant));
-        }
-        program.set_outputs(nodes.split_off(nodes.len().saturating_sub(5)));
-        program
-    })
+#[test]
+fn random_programs_agree() {
+    let mut random = Random::new(5);
+    for _ in 0..400 {
+        let operations = 1 + random.below(60);
+        let program = random.program(operations);
+        let points = points(&mut random, 25);
+        check(&program, &points);
+        check(&program.with_gradient(), &points);
+    }
 }
 
-proptest! {
-    #[test]
-    fn random_programs_agree(program in programs(), points in prop::collection::vec(prop::array::uniform3(prop_oneof![
-        select(&TELLING), any::<f64>(), -3.0..3.0
-    ]), 0..20)) {
-        check(&program, &points);
+#[test]
+fn programs_that_spill_agree() {
+    let mut random = Random::new(6);
+    for width in [20, 100, 1500] {
+        let program = random.wide_program(width);
+        check(&program, &points(&mut random, 30));
+    }
+}
+
+#[test]
+fn a_function_agrees_with_the_point_kernel() {
+    let mut random = Random::new(7);
+    let jit = Jit::new().unwrap();
+    for _ in 0..50 {
+        let program = random.program(20);
+        let (function, kernel) = (jit.function(&program).unwrap(), jit.point(&program).unwrap());
+        for [x, y, z] in points(&mut random, 20) {
+            let mut value = [0.0];
+            kernel.evaluate(&mut Scratch::default(), x, y, z, &mut value);
+            assert_eq!(bits(&[function.call(x, y, z)]), bits(&value));
+        }
     }
 }
