@@ -8,6 +8,7 @@ mod batch;
 mod certified;
 mod counters;
 mod error;
+mod fitted;
 mod normals;
 mod paper;
 mod ray;

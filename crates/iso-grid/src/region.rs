@@ -8,8 +8,8 @@ use crate::{Ray, Span};
 /// An axis-parallel box with finite ends and a positive extent along each axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
-    min: DVec3,
-    max: DVec3,
+    pub(crate) min: DVec3,
+    pub(crate) max: DVec3,
 }
 
 /// Why two corners make no [`Region`].
