@@ -104,24 +104,18 @@ impl Camera {
     /// # Errors
     /// When a number is out of range or the directions are degenerate.
     pub fn new(view: View, projection: Projection, region: &Region, size: Size) -> Result<Self, CameraError> {
-        let radius = 0.5 * region.extent().length();
         let (width, height) = (f64::from(size.width()), f64::from(size.height()));
-        // What must be visible of the bounding sphere is decided by the shorter side of the picture.
-        let narrowness = (width / height).min(1.0);
-        let framing_distance = match projection {
-            Projection::Perspective { fov } => {
-                checked("the field of view", "between 0 and 180 degrees", fov, 0.0 < fov && fov < 180.0)?;
-                radius / core_math::sin(core_math::atan(half_height(fov) * narrowness))
-            }
-            Projection::Orthographic { .. } => 2.0 * radius,
-        };
-        let (eye, forward, up) = place(view, region.center(), framing_distance)?;
+        if let Projection::Perspective { fov } = projection {
+            checked("the field of view", "between 0 and 180 degrees", fov, 0.0 < fov && fov < 180.0)?;
+        }
+        let frame = Frame { region, projection, aspect: width / height };
+        let (eye, forward, up) = place(view, &frame)?;
         let right = forward.cross(up).normalize();
         let down = forward.cross(right);
         let (projection, spacing) = match projection {
             Projection::Perspective { fov } => (Rays::Spreading(eye), 2.0 * half_height(fov) / height),
             Projection::Orthographic { view_width } => {
-                let view_width = view_width.unwrap_or(2.0 * radius * (width / height).max(1.0));
+                let view_width = view_width.unwrap_or_else(|| frame.view_width(right, down));
                 checked(
                     "the view width",
                     "positive",
@@ -167,21 +161,65 @@ fn half_height(fov: f64) -> f64 {
     core_math::tan(0.5 * fov.to_radians())
 }
 
+/// What it takes to show a whole region.
+struct Frame<'a> {
+    region: &'a Region,
+    projection: Projection,
+    /// Width by height of the picture.
+    aspect: f64,
+}
+
+/// The part of the picture, in each direction from its middle, that the region may fill.
+const FILLED: f64 = 0.96;
+
+impl Frame<'_> {
+    /// The corners of the region, seen from its middle.
+    fn corners(&self) -> impl Iterator<Item = DVec3> {
+        let half = 0.5 * self.region.extent();
+        (0..8).map(move |corner| {
+            half * DVec3::from_array([1, 2, 4].map(|bit| if corner & bit == 0 { -1.0 } else { 1.0 }))
+        })
+    }
+
+    /// How far from the middle an eye must stand that looks along `forward`, so that every corner is in the picture.
+    fn distance(&self, forward: DVec3, up: DVec3) -> f64 {
+        let Projection::Perspective { fov } = self.projection else {
+            return self.region.extent().length();
+        };
+        let right = forward.cross(up).normalize();
+        let up = right.cross(forward);
+        let reach = FILLED * half_height(fov);
+        let distances = self.corners().map(|corner| {
+            let across = (corner.dot(right).abs() / self.aspect).max(corner.dot(up).abs());
+            across / reach - corner.dot(forward)
+        });
+        distances.fold(0.0, f64::max)
+    }
+
+    /// The width of a picture of parallel rays that shows every corner.
+    fn view_width(&self, right: DVec3, down: DVec3) -> f64 {
+        let widths = self
+            .corners()
+            .map(|corner| corner.dot(right).abs().max(corner.dot(down).abs() * self.aspect) * 2.0 / FILLED);
+        widths.fold(0.0, f64::max)
+    }
+}
+
 /// The eye, the unit vector forward, and a direction that is up in the picture and not along `forward`.
-fn place(view: View, center: DVec3, framing_distance: f64) -> Result<(DVec3, DVec3, DVec3), CameraError> {
+fn place(view: View, frame: &Frame<'_>) -> Result<(DVec3, DVec3, DVec3), CameraError> {
     match view {
         View::Orbit { yaw, pitch, distance } => {
             checked("the yaw", "finite", yaw, yaw.is_finite())?;
             checked("the pitch", "between -90 and 90 degrees", pitch, pitch.abs() <= 90.0)?;
-            let distance = distance.unwrap_or(framing_distance);
-            checked("the distance", "positive", distance, distance > 0.0 && distance.is_finite())?;
             // Correctly rounded functions, so that the camera is the same on every machine.
             let (sin_yaw, cos_yaw) = core_math::sincos(yaw.to_radians());
             let (sin_pitch, cos_pitch) = core_math::sincos(pitch.to_radians());
             let outward = DVec3::new(cos_pitch * sin_yaw, -cos_pitch * cos_yaw, sin_pitch);
             // Perpendicular to `outward` at every pitch, so that looking straight down has an up direction too.
             let up = DVec3::new(-sin_pitch * sin_yaw, sin_pitch * cos_yaw, cos_pitch);
-            Ok((center + distance * outward, -outward, up))
+            let distance = distance.unwrap_or_else(|| frame.distance(-outward, up));
+            checked("the distance", "positive", distance, distance > 0.0 && distance.is_finite())?;
+            Ok((frame.region.center() + distance * outward, -outward, up))
         }
         View::LookAt { eye, target, up } => {
             let all = eye + target + up;
@@ -232,32 +270,40 @@ mod tests {
         assert!((camera.up() - DVec3::Y).length() < CLOSE);
     }
 
-    /// The bounding sphere is framed: it stays inside the picture, and fills its shorter side.
+    /// The corners of the region are inside the picture, and some come close to its edge.
     #[test]
     fn the_whole_region_is_in_the_picture() {
         let region = region();
-        let radius = 0.5 * region.extent().length();
+        let (half, center) = (0.5 * region.extent(), region.center());
         for (width, height) in [(100, 100), (300, 100), (100, 300)] {
             for projection in [Projection::DEFAULT, Projection::Orthographic { view_width: None }] {
                 let size = Size::new(width, height).unwrap();
                 let camera = Camera::new(View::DEFAULT, projection, &region, size).unwrap();
-                let (column, row) = (width / 2, height / 2);
-                let nearest_miss = |column, row| {
-                    let ray = camera.ray(column, row);
-                    let offset = region.center() - ray.origin;
-                    (offset - offset.dot(ray.direction) * ray.direction).length()
-                };
-                let edges = [
-                    nearest_miss(0, row),
-                    nearest_miss(width - 1, row),
-                    nearest_miss(column, 0),
-                    nearest_miss(column, height - 1),
-                ];
-                let tightest = edges.iter().copied().fold(f64::INFINITY, f64::min);
-                assert!(tightest > 0.97 * radius, "{width}x{height} {projection:?}: {edges:?} of {radius}");
-                assert!(tightest < 1.03 * radius, "{width}x{height} {projection:?}: {edges:?} of {radius}");
+                let farthest = (0..8)
+                    .map(|corner| {
+                        let signs = DVec3::from_array(
+                            [1, 2, 4].map(|bit| if corner & bit == 0 { -1.0 } else { 1.0 }),
+                        );
+                        let [column, row] = project(&camera, center + signs * half);
+                        let (across, along) =
+                            (2.0 * column / f64::from(width) - 1.0, 2.0 * row / f64::from(height) - 1.0);
+                        across.abs().max(along.abs())
+                    })
+                    .fold(0.0, f64::max);
+                assert!((farthest - FILLED).abs() < 1e-9, "{width}x{height} {projection:?}: {farthest}");
             }
         }
+    }
+
+    /// Where a point appears in the picture, in pixels from its upper left corner.
+    fn project(camera: &Camera, point: DVec3) -> [f64; 2] {
+        let (eye, depth) = match camera.projection {
+            Rays::Spreading(eye) => (eye, (point - eye).dot(camera.forward)),
+            Rays::Parallel(middle) => (middle, 1.0),
+        };
+        let offset = (point - eye) / depth;
+        let along = |axis: DVec3, middle: f64| middle + offset.dot(axis) / axis.length_squared();
+        [along(camera.right, camera.middle[0]), along(camera.down, camera.middle[1])]
     }
 
     #[test]
