@@ -6,7 +6,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use iso_expr::engine::{Engine, Scratch};
-use iso_expr::{Ast, FormulaError, Interpreter};
+use iso_expr::{Ast, FormulaError, FormulaErrorKind, Interpreter, decode};
 use serde::Deserialize;
 
 /// One file of the corpus.
@@ -160,4 +160,26 @@ fn expected_span(case: &Wrong) -> Option<(usize, usize)> {
         |place: usize| case.formula.char_indices().nth(place).map_or(case.formula.len(), |(byte, _)| byte);
     let blanks = carets.chars().take_while(|character| *character == ' ').count();
     Some((byte(blanks), byte(carets.chars().count())))
+}
+
+#[test]
+fn bytes_that_are_no_text_are_refused_with_their_place() {
+    assert_eq!(decode("x²".as_bytes()), Ok("x²"));
+    let error = decode(b"x + \xffy").unwrap_err();
+    assert_eq!(error.kind, FormulaErrorKind::NotUtf8 { byte: 0xff, offset: 4 });
+    assert_eq!(error.span, 4..5);
+    assert_eq!(decode("x²".as_bytes().split_last().unwrap().1).unwrap_err().span, 1..2);
+}
+
+#[test]
+fn the_scenes_of_the_oracle_are_read() {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../testdata/oracle/scenes.toml");
+    let scenes: toml::Table = toml::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    let scenes = scenes["scene"].as_array().unwrap();
+    for scene in scenes {
+        let text = scene["formula"].as_str().unwrap();
+        let ast = Ast::parse(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+        assert_eq!(Ast::parse(&ast.to_string()), Ok(ast), "{text}");
+    }
+    assert!(!scenes.is_empty());
 }

@@ -63,6 +63,12 @@ const PIECES: &[&str] = &[
     "xy",
 ];
 
+/// What stands between operands, and operands, of which most rows mean something.
+const OPERATORS: &[&str] =
+    &["+", " - ", "*", "/", "^", " ", "", "²·", "³ ", " and ", " or ", "<", "==", "√", ",", "\n", ";"];
+const OPERANDS: &[&str] =
+    &["x", "2", ".5", "-y", "√z", "(x+1)", "|x|", "sin(x)", "f(x)", "a", "e", "(not x)", "min(x,y)", "--2"];
+
 /// Reads `text`; what is read is printed, outlined and lowered.
 fn check(text: &str) -> Result<(), TestCaseError> {
     match Ast::parse(text) {
@@ -84,7 +90,7 @@ fn check(text: &str) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(20_000) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(5_000) })]
 
     #[test]
     fn any_pieces_are_read_or_refused(
@@ -92,6 +98,15 @@ proptest! {
         blank in proptest::sample::select(&["", " "][..]),
     ) {
         check(&pieces.join(blank))?;
+    }
+
+    #[test]
+    fn plausible_rows_are_read_or_refused(
+        rows in proptest::collection::vec((proptest::sample::select(OPERATORS), proptest::sample::select(OPERANDS)), 1..10),
+    ) {
+        let row: String = rows.into_iter().flat_map(|(operator, operand)| [operator, operand]).collect();
+        check(&format!("a := 1; f(u) := u^a; if(x{row}, 1, 2)"))?;
+        check(&format!("a := 1; f(u) := u^a; x{row}"))?;
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! A place among the items of a text.
 
+use std::ops::Range;
+
+use super::error::{FormulaError, FormulaErrorKind};
 use super::item::{Item, Kind};
 use super::limits;
-use super::{FormulaError, FormulaErrorKind};
-use std::ops::Range;
 
 /// The items still to be read, and what is noted of those already read.
 pub(super) struct Cursor<'t> {

@@ -8,7 +8,7 @@ use super::function::Function;
 ///
 /// # Errors
 /// When one leads back to itself, the names on the way.
-pub(super) fn order_definitions(definitions: &mut [Definition]) -> Result<(), FormulaError> {
+pub(super) fn mark_constants(definitions: &mut [Definition]) -> Result<(), FormulaError> {
     let mut walk = Walk { states: vec![State::New; definitions.len()], path: Vec::new() };
     for start in 0..definitions.len() {
         walk.visit(start, definitions)?;

@@ -13,6 +13,7 @@ use super::error::{FormulaError, FormulaErrorKind};
 use super::fault;
 use super::function::Function;
 use super::item::{Item, Kind};
+use super::number::{number, superscript};
 use super::scope::{Meaning, Parameters, Scope};
 use crate::Operation;
 
@@ -129,7 +130,7 @@ impl<'t> Reader<'_, 't> {
                         return Ok(());
                     }
                 }
-                Kind::number => return self.read_leaf(Term::Number(fault::number(&item)?)),
+                Kind::number => return self.read_leaf(Term::Number(number(&item)?)),
                 Kind::pi => return self.read_leaf(Term::Constant(NamedConstant::Pi)),
                 Kind::tau => return self.read_leaf(Term::Constant(NamedConstant::Tau)),
                 _ => return Err(self.missing_operand(&item)),
@@ -262,7 +263,7 @@ impl<'t> Reader<'_, 't> {
     /// `x²`: the operand just read, to a power.
     fn read_superscript(&mut self, item: &Item<'_>) -> Result<(), FormulaError> {
         let base = self.operands.pop().expect("an operand has just been read");
-        let exponent = fault::superscript(item)?;
+        let exponent = superscript(item)?;
         let mut power = self.tree.push(Term::Number(exponent.abs()));
         if item.text.starts_with('⁻') {
             power = self.tree.push(Term::Prefix(Prefix::Negate, power));
@@ -338,7 +339,11 @@ impl<'t> Reader<'_, 't> {
         match self.brackets.last() {
             Some(Bracket { kind: BracketKind::Call { .. }, .. }) => {}
             Some(Bracket { kind: BracketKind::Bar, open }) => return Err(fault::unclosed(open)),
-            _ => return Err(fault::stray_comma(item)),
+            _ => {
+                let before = self.cursor.previous().map(|item| item.kind);
+                let is_between = before == Some(Kind::number) && self.cursor.second().kind == Kind::number;
+                return Err(fault::stray_comma(item, is_between));
+            }
         }
         self.settle_bracket();
         self.cursor.advance();

@@ -8,33 +8,6 @@ use super::item::{Item, Kind, shortened};
 use super::scope::{Parameters, Scope};
 use super::suggestion::suggestion;
 
-/// The double that a number reads as.
-pub(super) fn number(item: &Item<'_>) -> Result<f64, FormulaError> {
-    in_range(item, &item.text.replace('−', "-"))
-}
-
-/// The number that superscript digits, and perhaps a superscript minus, read as.
-pub(super) fn superscript(item: &Item<'_>) -> Result<f64, FormulaError> {
-    const DIGITS: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹";
-    let digit = |character| DIGITS.chars().position(|digit| digit == character);
-    let digits = item.text.chars().map(|character| match digit(character) {
-        Some(digit) => char::from(b'0' + digit as u8),
-        None => '-',
-    });
-    in_range(item, &digits.collect::<String>())
-}
-
-fn in_range(item: &Item<'_>, text: &str) -> Result<f64, FormulaError> {
-    let value: f64 = text.parse().expect("the grammar lets only numbers pass");
-    let mantissa = text.split(['e', 'E']).next().unwrap_or(text);
-    let is_zero = !mantissa.contains(|character| ('1'..='9').contains(&character));
-    if value.is_finite() && (value != 0.0 || is_zero) {
-        return Ok(value);
-    }
-    let kind = FormulaErrorKind::NumberOutOfRange { number: shortened(item.text) };
-    Err(FormulaError::new(kind, item.span()).with_help("numbers lie between 4.9e-324 and 1.8e308 in size"))
-}
-
 /// A name that means nothing; `next` and `previous` stand around it.
 pub(super) fn unknown_name(
     item: &Item<'_>,
@@ -109,10 +82,11 @@ pub(super) fn unclosed(open: &Item<'_>) -> FormulaError {
 }
 
 /// A comma outside of a function's arguments.
-pub(super) fn stray_comma(item: &Item<'_>) -> FormulaError {
-    FormulaError::new(FormulaErrorKind::StrayComma, item.span()).with_help(
-        "decimals are written with a point, as in `0.5`; what stands before the parenthesis is no function",
-    )
+pub(super) fn stray_comma(item: &Item<'_>, is_between_numbers: bool) -> FormulaError {
+    FormulaError::new(FormulaErrorKind::StrayComma, item.span()).with_help(match is_between_numbers {
+        true => "decimals are written with a point, as in `0.5`",
+        false => "commas part the arguments of functions; `;` or a new line ends a definition",
+    })
 }
 
 /// A character that the language does not use.

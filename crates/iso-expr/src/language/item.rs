@@ -1,9 +1,9 @@
 //! Text cut into items by the grammar.
 
+use std::ops::Range;
+
 use pest::Parser;
 use pest_derive::Parser;
-
-use std::ops::Range;
 
 #[derive(Parser)]
 #[grammar = "language/grammar.pest"]

@@ -283,3 +283,62 @@ impl<'a> Lowering<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Axis, Node};
+
+    fn lower(text: &str) -> Formula {
+        Ast::parse(text).unwrap().lower(&[]).unwrap()
+    }
+
+    /// The operations of a program in their order.
+    fn operations(program: &Program) -> Vec<Operation> {
+        let operation = |node: &Node| match node {
+            Node::Apply(operation, _) => Some(*operation),
+            _ => None,
+        };
+        program.nodes().iter().filter_map(operation).collect()
+    }
+
+    #[test]
+    fn an_integer_exponent_multiplies() {
+        use Operation::*;
+        assert_eq!(operations(lower("x^2").program()), [IntegerPower]);
+        assert_eq!(operations(lower("n := 5 - 3; x^n").program()), [IntegerPower]);
+        assert_eq!(operations(lower("x^-2").program()), [IntegerPower, Divide]);
+        assert_eq!(operations(lower("x^1").program()), []);
+        assert_eq!(operations(lower("x^0").program()), []);
+        assert_eq!(operations(lower("x^1024").program()), [IntegerPower]);
+        assert_eq!(operations(lower("x^1025").program()), [IntegerPower, Multiply]);
+        assert_eq!(operations(lower("x^2.5").program()), [Power]);
+        assert_eq!(operations(lower("e^x").program()), [Exp]);
+        // Twenty tenths of a double are not the integer 2.
+        assert_eq!(operations(lower("x^(20*0.1)").program()), [Multiply, Power]);
+    }
+
+    #[test]
+    fn what_is_equal_is_computed_once() {
+        let formula = lower("f(u) := sin(u)^2; r := x + y; f(r) + f(x + y) + (x + y)");
+        use Operation::*;
+        assert_eq!(operations(formula.program()), [Add, Sin, IntegerPower, Add, Add]);
+    }
+
+    #[test]
+    fn what_is_not_used_leaves_nothing() {
+        let formula = lower("a := sqrt(2); b := exp(3); f(u) := ln(u); x");
+        assert_eq!(formula.program().nodes(), [Node::Variable(Axis::X)]);
+        let expected = [("a".to_owned(), std::f64::consts::SQRT_2), ("b".to_owned(), 20.085536923187668)];
+        assert_eq!(formula.parameters(), expected);
+    }
+
+    #[test]
+    fn a_level_is_taken_from_an_expression() {
+        let formula = lower("x^2");
+        assert!(!formula.is_equation());
+        assert_eq!(operations(&formula.minus_level(2.0)), [Operation::IntegerPower, Operation::Subtract]);
+        assert_eq!(formula.minus_level(0.0).nodes(), formula.program().nodes());
+        assert!(lower("x^2 = 2").is_equation());
+    }
+}

@@ -76,3 +76,37 @@ fn write_indentation(f: &mut Formatter<'_>, branch: &[bool], last: Option<bool>)
         Some(false) => f.write_str("├─ "),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_outline_shows_who_is_an_operand_of_whom() {
+        let ast = Ast::parse("f(u) := -u; a := 2; max(f(x), a, 3) = y^2").unwrap();
+        let expected = "\
+f(u) :=
+└─ negate
+   └─ u
+a :=
+└─ 2
+=
+├─ max
+│  ├─ f
+│  │  └─ x
+│  ├─ a
+│  └─ 3
+└─ ^
+   ├─ y
+   └─ 2
+";
+        assert_eq!(ast.outline().to_string(), expected);
+    }
+
+    #[test]
+    fn a_long_sum_is_cut() {
+        let ast = Ast::parse(&format!("x{}", "+x".repeat(10_000))).unwrap();
+        let outline = ast.outline().to_string();
+        assert!(outline.contains('…') && outline.lines().count() < 4 * DEEPEST, "{outline}");
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::ast::{Ast, Definition, Tree};
 use super::cursor::Cursor;
-use super::definition::order_definitions;
+use super::definition::mark_constants;
 use super::error::{FormulaError, FormulaErrorKind};
 use super::expression::{Place, read_expression};
 use super::fault;
@@ -39,7 +39,7 @@ impl Ast {
         statements.read()?;
         statements.cursor.check_depth()?;
         let mut definitions = statements.definitions;
-        order_definitions(&mut definitions)?;
+        mark_constants(&mut definitions)?;
         match statements.formula {
             Some((left, right)) => Ok(Self { definitions, left, right }),
             None if definitions.is_empty() => Err(FormulaError::new(FormulaErrorKind::Empty, 0..0)
