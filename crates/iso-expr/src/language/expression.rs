@@ -218,29 +218,13 @@ impl<'t> Reader<'_, 't> {
         }
     }
 
-    /// The operator that `item` is.
+    /// The operator that `item` is, if it may stand here.
     fn infix(&self, item: &Item<'t>) -> Result<Infix, FormulaError> {
-        let infix = match item.kind {
-            Kind::or => Infix::Or,
-            Kind::and => Infix::And,
-            Kind::less => Infix::Less,
-            Kind::less_or_equal => Infix::LessOrEqual,
-            Kind::greater => Infix::Greater,
-            Kind::greater_or_equal => Infix::GreaterOrEqual,
-            Kind::double_equal => Infix::Equal,
-            Kind::not_equal => Infix::NotEqual,
-            Kind::plus => Infix::Add,
-            Kind::minus => Infix::Subtract,
-            Kind::times => Infix::Multiply,
-            Kind::over => Infix::Divide,
-            Kind::power => Infix::Power,
-            _ => return Err(self.missing_operator(item)),
-        };
+        let infix = infix_of(item.kind).ok_or_else(|| self.missing_operator(item))?;
         if infix.precedence() <= Precedence::Comparison {
-            self.check_condition(item).map(|()| infix)
-        } else {
-            Ok(infix)
+            self.check_condition(item)?;
         }
+        Ok(infix)
     }
 
     /// Settles what binds at least as tightly, then lets the operator wait for its right operand.
@@ -420,4 +404,23 @@ impl<'t> Reader<'_, 't> {
 /// Whether an item cannot stand inside brackets, so that one of those still open must lack its end.
 fn ends_statement(kind: Kind) -> bool {
     matches!(kind, Kind::EOI | Kind::semicolon | Kind::function_head | Kind::value_head | Kind::define)
+}
+
+fn infix_of(kind: Kind) -> Option<Infix> {
+    Some(match kind {
+        Kind::or => Infix::Or,
+        Kind::and => Infix::And,
+        Kind::less => Infix::Less,
+        Kind::less_or_equal => Infix::LessOrEqual,
+        Kind::greater => Infix::Greater,
+        Kind::greater_or_equal => Infix::GreaterOrEqual,
+        Kind::double_equal => Infix::Equal,
+        Kind::not_equal => Infix::NotEqual,
+        Kind::plus => Infix::Add,
+        Kind::minus => Infix::Subtract,
+        Kind::times => Infix::Multiply,
+        Kind::over => Infix::Divide,
+        Kind::power => Infix::Power,
+        _ => return None,
+    })
 }
