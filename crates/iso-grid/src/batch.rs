@@ -3,6 +3,8 @@
 use glam::DVec3;
 use iso_expr::{BatchKernel, Scratch, engine::Points};
 
+use crate::Ray;
+
 /// Points coordinate by coordinate, and room for what a kernel says of them.
 #[derive(Debug, Default)]
 pub(crate) struct PointBatch {
@@ -23,6 +25,15 @@ impl PointBatch {
         self.x.push(point.x);
         self.y.push(point.y);
         self.z.push(point.z);
+    }
+
+    /// Adds the points of a ray at these places.
+    pub(crate) fn push_along(&mut self, ray: &Ray, places: &[f64]) {
+        let coordinates = [&mut self.x, &mut self.y, &mut self.z];
+        for (axis, coordinates) in coordinates.into_iter().enumerate() {
+            let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
+            coordinates.extend(places.iter().map(|t| origin + t * direction));
+        }
     }
 
     pub(crate) fn len(&self) -> usize {

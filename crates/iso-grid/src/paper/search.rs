@@ -26,18 +26,32 @@ pub(crate) struct Search<S> {
     ray: Ray,
     stretches: S,
     sampled: Option<Sampled>,
-    block: [Sample; BLOCK],
-    asked: usize,
-    read: usize,
+    block: Block,
     previous: Option<Sample>,
     stage: Stage,
 }
 
-/// The stretch being sampled, and the step that comes next.
+/// The stretch being sampled.
 #[derive(Clone, Copy)]
 struct Sampled {
     stretch: Stretch,
-    step: u32,
+    /// How many steps from its start the next sample is.
+    next: u32,
+    /// Whether nothing was left out between the next sample and the last one.
+    joined: bool,
+}
+
+/// Samples asked for together.
+#[derive(Clone, Copy, Default)]
+struct Block {
+    places: [f64; BLOCK],
+    values: [f64; BLOCK],
+    /// Whether nothing was left out between a sample and the one before it.
+    joined: [bool; BLOCK],
+    /// How many were asked for.
+    asked: usize,
+    /// How many were looked at.
+    read: usize,
 }
 
 /// F − C at a point of the ray.
@@ -45,13 +59,9 @@ struct Sampled {
 struct Sample {
     t: f64,
     value: f64,
-    /// Whether the sample before it is its neighbour: nothing between them was left out.
-    joined: bool,
 }
 
 impl Sample {
-    const UNASKED: Self = Self { t: 0.0, value: f64::NAN, joined: false };
-
     fn signs(&self) -> Signs {
         Signs::of(self.value)
     }
@@ -97,9 +107,7 @@ impl<S: Stretches> Search<S> {
             ray,
             stretches,
             sampled: None,
-            block: [Sample::UNASKED; BLOCK],
-            asked: 0,
-            read: 0,
+            block: Block::default(),
             previous: None,
             stage: Stage::Sampling,
         }
@@ -124,10 +132,8 @@ impl<S: Stretches> Search<S> {
         match (self.stage, values) {
             (Stage::Sampling, []) => return Some(Outcome::Miss),
             (Stage::Sampling, _) => {
-                for (sample, &value) in self.block.iter_mut().zip(values) {
-                    sample.value = value;
-                }
-                self.read = 0;
+                self.block.values[..values.len()].copy_from_slice(values);
+                self.block.read = 0;
             }
             (Stage::Halving(bracket), &[value]) => return self.halve(bracket, value),
             (Stage::Halving(bracket), _) if bracket.after.value == 0.0 => {
@@ -141,44 +147,54 @@ impl<S: Stretches> Search<S> {
     }
 
     fn ask_for(&self, points: &mut PointBatch, t: f64) -> usize {
-        points.push(self.ray.at(t));
+        points.push_along(&self.ray, &[t]);
         1
     }
 
     fn ask_for_block(&mut self, points: &mut PointBatch) -> usize {
-        self.asked = 0;
-        while self.asked < BLOCK {
-            let Some(sample) = self.next_sample() else { break };
-            points.push(self.ray.at(sample.t));
-            self.block[self.asked] = sample;
-            self.asked += 1;
+        self.block.asked = 0;
+        while self.block.asked < BLOCK && self.stand_before_sample() {
+            let Some(Sampled { stretch, next, joined }) = &mut self.sampled else { break };
+            let count = (BLOCK - self.block.asked).min((stretch.steps + 1 - *next) as usize);
+            let run = self.block.asked..self.block.asked + count;
+            for (place, step) in self.block.places[run.clone()].iter_mut().zip(*next..) {
+                *place = stretch.sample(step);
+            }
+            self.block.joined[run.clone()].fill(true);
+            self.block.joined[run.start] = *joined;
+            (*next, *joined) = (*next + count as u32, true);
+            self.block.asked = run.end;
         }
-        self.asked
+        points.push_along(&self.ray, &self.block.places[..self.block.asked]);
+        self.block.asked
     }
 
-    /// The next sample to be taken. Where a stretch begins at the end of the last one, its first sample is the other's
-    /// last one.
-    fn next_sample(&mut self) -> Option<Sample> {
-        let (sampled, joined) = match self.sampled {
-            Some(Sampled { stretch, step }) if step < stretch.steps => {
-                (Sampled { stretch, step: step + 1 }, true)
-            }
-            last => {
-                let stretch = self.stretches.next()?;
-                let joined = last.is_some_and(|last| last.stretch.span.end == stretch.span.start);
-                (Sampled { stretch, step: u32::from(joined) }, joined)
-            }
-        };
-        self.sampled = Some(sampled);
-        Some(Sample { t: sampled.stretch.sample(sampled.step), value: f64::NAN, joined })
+    /// Goes on to the next stretch where the last one ended. Where it begins at the other's end, its first sample is the
+    /// other's last one. Says whether there is a sample left.
+    fn stand_before_sample(&mut self) -> bool {
+        let last = self.sampled;
+        if last.is_some_and(|last| last.next <= last.stretch.steps) {
+            return true;
+        }
+        let Some(stretch) = self.stretches.next() else { return false };
+        let joined = last.is_some_and(|last| last.stretch.span.end == stretch.span.start);
+        self.sampled = Some(Sampled { stretch, next: u32::from(joined), joined });
+        true
     }
 
     /// Goes on through the block's samples to the next change of sign.
     fn read_block(&mut self) -> Option<Outcome> {
-        while self.read < self.asked {
-            let sample = self.block[self.read];
-            self.read += 1;
-            let before = self.previous.replace(sample).filter(|_| sample.joined);
+        let Block { places, values, joined, asked, read } = self.block;
+        let signs: Signs = values[read..asked].iter().map(|&value| Signs::of(value)).collect();
+        let known = self.previous.map_or(Signs::NONE, |previous| previous.signs());
+        if !(known | signs).differ() && read < asked {
+            self.previous = Some(Sample { t: places[asked - 1], value: values[asked - 1] });
+            return None;
+        }
+        for number in read..asked {
+            self.block.read = number + 1;
+            let sample = Sample { t: places[number], value: values[number] };
+            let before = self.previous.replace(sample).filter(|_| joined[number]);
             let known = before.map_or(Signs::NONE, |before| before.signs());
             match before {
                 Some(before) if known != Signs::NONE && (known | sample.signs()).differ() => {
@@ -195,7 +211,7 @@ impl<S: Stretches> Search<S> {
     /// Keeps the half of a bracket whose ends have unlike signs. Where F − C is undefined in the middle, the bracket is
     /// given up and the search goes on behind it.
     fn halve(&mut self, mut bracket: Bracket, value: f64) -> Option<Outcome> {
-        let middle = Sample { t: bracket.middle()?, value, joined: true };
+        let middle = Sample { t: bracket.middle()?, value };
         if middle.signs() == Signs::NONE {
             self.stage = Stage::Sampling;
             return if bracket.after.value == 0.0 { Some(touch(bracket.after.t)) } else { self.read_block() };

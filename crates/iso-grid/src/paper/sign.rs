@@ -15,17 +15,11 @@ impl Signs {
     pub(crate) const POSITIVE: Self = Self(0b10);
     pub(crate) const BOTH: Self = Self(0b11);
 
-    /// The signs of one value.
+    /// The signs of one value. Without branches, for millions of samples pass through here.
+    #[inline]
     pub(crate) fn of(value: f64) -> Self {
-        if !value.is_finite() {
-            Self::NONE
-        } else if value > 0.0 {
-            Self::POSITIVE
-        } else if value < 0.0 {
-            Self::NEGATIVE
-        } else {
-            Self::BOTH
-        }
+        let finite = u8::from(value.abs() < f64::INFINITY);
+        Self(u8::from(value <= 0.0) & finite | (u8::from(value >= 0.0) & finite) << 1)
     }
 
     /// The paper's test: the points do not all have one sign, so the surface passes between them.
