@@ -168,3 +168,50 @@ impl PointSigns<'_> {
         blocks.corners(block).map(|corner| self.known[&lattice::index(corner, counts)]).into_iter().collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::paper::existence::Cells;
+    use crate::testing::{Function, surface_without_gradient};
+    use crate::{GridSettings, Region};
+
+    /// The existence cells of the octree, of the grid, and of both.
+    fn cells_of_octree_grid_and_both(function: Function, cells: [u32; 3]) -> [usize; 3] {
+        let region = Region::new(DVec3::splat(-1.0), DVec3::splat(1.0)).unwrap();
+        let lattice = Lattice::new(&region, cells);
+        let surface = surface_without_gradient(function);
+        let kernel = &**surface.values().unwrap();
+        let refinement = GridSettings::new(cells).refinement;
+        let leaves = find(kernel, &lattice, refinement, &mut Counters::default()).unwrap();
+        let mut counters = Counters::default();
+        let grid = Cells::find(kernel, &lattice, refinement, &mut counters);
+        let both = leaves.iter().filter(|&&cell| grid.holds_surface(cell)).count();
+        [leaves.len(), counters.existence_cells as usize, both]
+    }
+
+    #[test]
+    fn connected_surfaces_have_the_cells_of_the_grid() {
+        for (function, cells) in [
+            ((|p| p.length_squared() - 0.8) as Function, [64, 64, 64]),
+            (|p| (7.0 * p.x).sin() + (6.0 * p.y).sin() + (5.0 * p.z).sin(), [45, 33, 17]),
+            (|p| if p.x > 0.3 { f64::NAN } else { p.y - p.x * p.z }, [1, 70, 29]),
+            (|p| p.z - 0.1, [5, 9, 1]),
+        ] {
+            let [octree, grid, both] = cells_of_octree_grid_and_both(function, cells);
+            assert!(octree > 0 && octree == grid && grid == both, "{octree} {grid} {both} in {cells:?}");
+        }
+    }
+
+    #[test]
+    fn a_small_ball_is_lost_on_its_own_but_not_beside_another() {
+        let small_ball: Function = |p| (p - 0.63).length() - 0.08;
+        let [octree, grid, _] = cells_of_octree_grid_and_both(small_ball, [64; 3]);
+        assert!(octree == 0 && grid > 0, "{octree} {grid}");
+        let touching_balls: Function = |p| ((p - 0.63).length() - 0.08).min((p - 0.3).length() - 0.5);
+        let [octree, grid, both] = cells_of_octree_grid_and_both(touching_balls, [64; 3]);
+        assert!(octree == grid && grid == both, "{octree} {grid} {both}");
+    }
+}
