@@ -13,8 +13,8 @@ use iso_expr::CompileError;
 use crate::refused;
 use crate::symbols::{self, Calls};
 
-/// The largest stack frame that a kernel may have, in bytes: an eighth of the stack that threads commonly have.
-const LARGEST_FRAME: u32 = 256 << 10;
+/// The largest stack frame that a kernel may have, in bytes: a quarter of the stack that threads commonly have.
+const LARGEST_FRAME: u32 = 512 << 10;
 
 /// A kernel before it is compiled.
 pub(crate) trait Blueprint {

@@ -7,6 +7,7 @@ use cranelift_codegen::Context;
 use iso_expr::{BatchKernel, BoxKernel, CompileError, Engine, PointKernel, Program};
 
 use crate::batch::{BatchBlueprint, NativeBatch};
+use crate::boxes::{BoxBlueprint, NativeBoxes};
 use crate::code::Compiled;
 use crate::host::Host;
 use crate::point::{FunctionBlueprint, NativeFunction, NativePoint, PointBlueprint};
@@ -64,8 +65,11 @@ impl Engine for Jit {
         Ok(Arc::new(NativeBatch::new(&blueprint, compiled)))
     }
 
-    fn boxes(&self, _: &Program) -> Result<Arc<dyn BoxKernel>, CompileError> {
-        Err(crate::refused(&"kernels over boxes are not written yet"))
+    fn boxes(&self, program: &Program) -> Result<Arc<dyn BoxKernel>, CompileError> {
+        let program = program.pruned();
+        let isa = self.host.admit(&program)?;
+        let compiled = Compiled::new(isa, &mut Context::new(), &BoxBlueprint(&program))?;
+        Ok(Arc::new(NativeBoxes::new(&program, compiled)))
     }
 }
 

@@ -31,7 +31,7 @@ pub(crate) struct Writer<'a, 'b> {
 
 /// The truth of a comparison in each lane: a byte for one lane, a mask of ones or zeros for two.
 #[derive(Clone, Copy)]
-pub(crate) struct Mask(Value);
+pub(crate) struct Mask(pub(crate) Value);
 
 impl Writer<'_, '_> {
     /// The same double in every lane.
@@ -94,6 +94,63 @@ impl Writer<'_, '_> {
     fn call_once(&mut self, function: FuncRef, operands: &[Value]) -> Value {
         let call = self.builder.ins().call(function, operands);
         self.builder.inst_results(call)[0]
+    }
+}
+
+/// What masks do to pairs of doubles, whose bits they cover.
+impl Writer<'_, '_> {
+    /// Where both hold.
+    pub(crate) fn both(&mut self, Mask(a): Mask, Mask(b): Mask) -> Mask {
+        Mask(self.builder.ins().band(a, b))
+    }
+
+    /// Where one holds.
+    pub(crate) fn either(&mut self, Mask(a): Mask, Mask(b): Mask) -> Mask {
+        Mask(self.builder.ins().bor(a, b))
+    }
+
+    /// Where `a` holds and `b` does not.
+    pub(crate) fn but_not(&mut self, Mask(a): Mask, Mask(b): Mask) -> Mask {
+        Mask(self.builder.ins().band_not(a, b))
+    }
+
+    /// Where it does not hold.
+    pub(crate) fn not(&mut self, Mask(a): Mask) -> Mask {
+        Mask(self.builder.ins().bnot(a))
+    }
+
+    /// `a` where the mask holds, else +0.
+    pub(crate) fn keep(&mut self, mask: Mask, a: Value) -> Value {
+        let mask = self.doubles(mask.0);
+        self.builder.ins().band(a, mask)
+    }
+
+    /// +0 where the mask holds, else `a`.
+    pub(crate) fn clear(&mut self, mask: Mask, a: Value) -> Value {
+        let mask = self.doubles(mask.0);
+        self.builder.ins().band_not(a, mask)
+    }
+
+    /// NaN where the mask holds, else `a`.
+    pub(crate) fn undefine(&mut self, mask: Mask, a: Value) -> Value {
+        let mask = self.doubles(mask.0);
+        self.builder.ins().bor(a, mask)
+    }
+
+    /// The bits of two doubles as integers.
+    pub(crate) fn bits(&mut self, doubles: Value) -> Value {
+        self.builder.ins().bitcast(types::I64X2, MemFlagsData::new(), doubles)
+    }
+
+    /// Two doubles of these bits.
+    pub(crate) fn doubles(&mut self, bits: Value) -> Value {
+        self.builder.ins().bitcast(types::F64X2, MemFlagsData::new(), bits)
+    }
+
+    /// The same integer in both lanes.
+    pub(crate) fn integers(&mut self, value: u64) -> Value {
+        let constant = self.constant(f64::from_bits(value));
+        self.bits(constant)
     }
 }
 

@@ -11,12 +11,15 @@
 #![allow(unsafe_code)]
 
 mod batch;
+mod boxes;
 mod code;
+mod enclosures;
 mod engine;
 mod host;
 mod lanes;
 mod point;
 mod symbols;
+mod trampoline;
 mod values;
 
 use std::fmt::Display;

@@ -1,19 +1,25 @@
-//! Functions of this process that native code calls: the values of operations that are not written out.
+//! Functions of this process that native code calls: the values and extensions of operations that are not written out.
 
 use std::collections::HashMap;
 
-use cranelift_codegen::ir::{AbiParam, FuncRef, Function, types};
+use cranelift_codegen::ir::{AbiParam, FuncRef, Function, Signature, types};
 use cranelift_jit::JITModule;
 use cranelift_module::{Linkage, Module};
 use iso_expr::{Operation, Value};
 
-use crate::host;
+use crate::{host, trampoline};
 
 /// Begins the name of every function that native code calls, so that none is taken for another library's.
 const PREFIX: &str = "iso_";
 
+/// The function that applies interval extensions.
+const EXTEND: &str = "iso_extend";
+
 /// The address of the function called `name`, if it is one of ours.
 pub(crate) fn address(name: &str) -> Option<*const u8> {
+    if name == EXTEND {
+        return Some(trampoline::extend as *const u8);
+    }
     let name = name.strip_prefix(PREFIX)?;
     let operation = Operation::all().find(|operation| format!("{operation:?}") == name)?;
     Some(match operation.value() {
@@ -26,7 +32,7 @@ pub(crate) fn address(name: &str) -> Option<*const u8> {
 /// The functions that one kernel calls, declared as they are first needed.
 pub(crate) struct Calls<'a> {
     module: &'a mut JITModule,
-    declared: HashMap<Operation, FuncRef>,
+    declared: HashMap<String, FuncRef>,
     /// Whether the machine rounds doubles to integers without a call.
     pub(crate) rounds_natively: bool,
 }
@@ -40,13 +46,31 @@ impl<'a> Calls<'a> {
 
     /// The function that gives the value of `operation`, to be called from `kernel`.
     pub(crate) fn value(&mut self, kernel: &mut Function, operation: Operation) -> FuncRef {
-        *self.declared.entry(operation).or_insert_with(|| {
-            let mut signature = self.module.make_signature();
-            signature.params = vec![AbiParam::new(types::F64); operation.arity()];
-            signature.returns = vec![AbiParam::new(types::F64)];
-            let name = format!("{PREFIX}{operation:?}");
-            let function = self.module.declare_function(&name, Linkage::Import, &signature);
-            self.module.declare_func_in_func(function.expect("a name has one signature"), kernel)
-        })
+        let operands = vec![AbiParam::new(types::F64); operation.arity()];
+        self.declare(kernel, format!("{PREFIX}{operation:?}"), operands, vec![AbiParam::new(types::F64)])
+    }
+
+    /// [`trampoline::extend`], to be called from `kernel`.
+    pub(crate) fn extend(&mut self, kernel: &mut Function) -> FuncRef {
+        let pointer = AbiParam::new(types::I64);
+        let operands = vec![AbiParam::new(types::I8).uext(), pointer, pointer];
+        self.declare(kernel, EXTEND.to_owned(), operands, Vec::new())
+    }
+
+    fn declare(
+        &mut self,
+        kernel: &mut Function,
+        name: String,
+        params: Vec<AbiParam>,
+        returns: Vec<AbiParam>,
+    ) -> FuncRef {
+        if let Some(function) = self.declared.get(&name) {
+            return *function;
+        }
+        let signature = Signature { params, returns, ..self.module.make_signature() };
+        let function = self.module.declare_function(&name, Linkage::Import, &signature);
+        let function = self.module.declare_func_in_func(function.expect("a name has one signature"), kernel);
+        self.declared.insert(name, function);
+        function
     }
 }

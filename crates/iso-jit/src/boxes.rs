@@ -1,0 +1,201 @@
+//! Kernels over batches of boxes: a loop over pairs of boxes, one in each 128-bit lane.
+
+use std::mem::offset_of;
+
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::{AbiParam, InstBuilder, MemFlagsData, Signature, Value, types};
+use cranelift_frontend::FunctionBuilder;
+use iso_expr::engine::{Boxes, Enclosures};
+use iso_expr::{BoxKernel, Decorated, Decoration, Node, Program, Scratch};
+
+use crate::code::{Blueprint, Compiled};
+use crate::enclosures::{self, Enclosure};
+use crate::lanes::{Lanes, Writer};
+use crate::symbols::Calls;
+use crate::trampoline::Room;
+
+/// Boxes in one round of the loop.
+const PAIR: usize = 2;
+
+/// Where a kernel reads and writes: the boxes' ends along x, y and z, and room for the outputs' enclosures.
+#[repr(C)]
+pub(crate) struct Places {
+    lo: [*const f64; 3],
+    hi: [*const f64; 3],
+    output_lo: *mut f64,
+    output_hi: *mut f64,
+    output_decoration: *mut Decoration,
+}
+
+/// The places; how many boxes there are, at least one; and how far the second box of a round stands from the first: one
+/// place, or none where there is just one box.
+type Enclose = unsafe extern "C" fn(&Places, usize, usize);
+
+/// A kernel over batches of boxes, as native code.
+pub(crate) struct NativeBoxes {
+    compiled: Compiled<Enclose>,
+    outputs: usize,
+}
+
+impl NativeBoxes {
+    pub(crate) fn new(program: &Program, compiled: Compiled<Enclose>) -> Self {
+        Self { compiled, outputs: program.outputs().len() }
+    }
+}
+
+impl BoxKernel for NativeBoxes {
+    fn evaluate(&self, _: &mut Scratch, boxes: Boxes<'_>, enclosures: Enclosures<'_>) {
+        let Enclosures { lo, hi, decoration } = enclosures;
+        let count = boxes.lo[0].len();
+        assert!(boxes.lo.iter().chain(&boxes.hi).all(|ends| ends.len() == count), "six ends for each box");
+        assert_eq!(
+            [lo.len(), hi.len(), decoration.len()],
+            [self.outputs * count; 3],
+            "room for every output over every box"
+        );
+        if count == 0 {
+            return;
+        }
+        let places = Places {
+            lo: boxes.lo.map(<[f64]>::as_ptr),
+            hi: boxes.hi.map(<[f64]>::as_ptr),
+            output_lo: lo.as_mut_ptr(),
+            output_hi: hi.as_mut_ptr(),
+            output_decoration: decoration.as_mut_ptr(),
+        };
+        let second = count.min(PAIR) - 1;
+        // SAFETY: at all places there are `count` boxes, and room for `count` enclosures of each output; what is written is
+        // borrowed mutably, so that it overlaps nothing else.
+        unsafe { (self.compiled.function)(&places, count, second) }
+    }
+}
+
+/// Takes what [`Enclose`] names, and walks through it round by round. The last round ends with the last box, and so may
+/// take one box a second time, which changes nothing.
+pub(crate) struct BoxBlueprint<'a>(pub(crate) &'a Program);
+
+impl Blueprint for BoxBlueprint<'_> {
+    const NAME: &'static str = "boxes";
+    type Function = Enclose;
+
+    fn sign(&self, signature: &mut Signature) {
+        signature.params.extend([AbiParam::new(types::I64); 3]);
+    }
+
+    fn write(&self, builder: &mut FunctionBuilder<'_>, calls: &mut Calls<'_>) {
+        let entry = builder.current_block().expect("writing begins in the entry block");
+        let &[places, count, second] = builder.block_params(entry) else {
+            unreachable!("three parameters were signed")
+        };
+        let before_last = builder.ins().isub(count, second);
+        let last = builder.ins().iadd_imm_s(before_last, -1);
+        let first = builder.ins().iconst(types::I64, 0);
+        let (round, end) = (builder.create_block(), builder.create_block());
+        let index = builder.append_block_param(round, types::I64);
+        builder.ins().jump(round, &[first.into()]);
+
+        builder.switch_to_block(round);
+        let mut round_of_boxes =
+            Round { writer: Writer { builder, lanes: Lanes::Two }, places, count, index, second };
+        round_of_boxes.write(calls, self.0);
+        let next = builder.ins().iadd_imm_s(index, PAIR as i64);
+        let beyond = builder.ins().icmp(IntCC::UnsignedGreaterThan, next, last);
+        let next = builder.ins().select(beyond, last, next);
+        let done = builder.ins().icmp(IntCC::Equal, index, last);
+        builder.ins().brif(done, end, &[], round, &[next.into()]);
+
+        builder.switch_to_block(end);
+        builder.ins().return_(&[]);
+    }
+
+    unsafe fn function(&self, start: *const u8) -> Self::Function {
+        // SAFETY: the code has the C convention, with the parameters that were signed.
+        unsafe { std::mem::transmute(start) }
+    }
+}
+
+/// Writes one round of the loop.
+struct Round<'a, 'b> {
+    writer: Writer<'a, 'b>,
+    places: Value,
+    count: Value,
+    /// The first box of the round.
+    index: Value,
+    /// How far the second one stands from it.
+    second: Value,
+}
+
+impl Round<'_, '_> {
+    fn write(&mut self, calls: &mut Calls<'_>, program: &Program) {
+        let mut room = None;
+        let mut enclosures: Vec<Enclosure> = Vec::with_capacity(program.nodes().len());
+        for node in program.nodes() {
+            enclosures.push(match node {
+                Node::Variable(axis) => self.argument(*axis as usize),
+                Node::Constant(constant) => {
+                    enclosures::constant(&mut self.writer, Decorated::constant(constant.enclosure()))
+                }
+                Node::Apply(operation, operands) => {
+                    let constants = [operands[0], operands[1]].map(|id| match program.node(id) {
+                        Node::Constant(constant) => Some(Decorated::constant(constant.enclosure())),
+                        _ => None,
+                    });
+                    let operands = operands.map(|id| enclosures[id.index()]);
+                    enclosures::apply(&mut self.writer, *operation, operands, constants).unwrap_or_else(
+                        || {
+                            let room = room.get_or_insert_with(|| Room::new(&mut self.writer));
+                            room.call(&mut self.writer, calls, *operation, &operands[..operation.arity()])
+                        },
+                    )
+                }
+            });
+        }
+        let mut place = self.index;
+        for output in program.outputs() {
+            self.store(enclosures[output.index()], place);
+            place = self.writer.builder.ins().iadd(place, self.count);
+        }
+    }
+
+    /// The boxes' extents along an axis.
+    fn argument(&mut self, axis: usize) -> Enclosure {
+        let offset = axis * size_of::<*const f64>();
+        let [lo, hi] = [offset_of!(Places, lo), offset_of!(Places, hi)].map(|ends| {
+            let [low, high] = self.elements(ends + offset, size_of::<f64>(), self.index).map(|address| {
+                self.writer.builder.ins().load(types::F64, MemFlagsData::trusted(), address, 0)
+            });
+            let pair = self.writer.builder.ins().scalar_to_vector(types::F64X2, low);
+            self.writer.builder.ins().insertlane(pair, high, 1)
+        });
+        enclosures::argument(&mut self.writer, lo, hi)
+    }
+
+    /// Puts an output's enclosures at its `place` and the one `second` after it.
+    fn store(&mut self, enclosure: Enclosure, place: Value) {
+        let hi = self.writer.builder.ins().fneg(enclosure.minus_hi);
+        for (end, offset) in
+            [(enclosure.lo, offset_of!(Places, output_lo)), (hi, offset_of!(Places, output_hi))]
+        {
+            for (lane, address) in self.elements(offset, size_of::<f64>(), place).into_iter().enumerate() {
+                let end = self.writer.builder.ins().extractlane(end, lane as u8);
+                self.writer.builder.ins().store(MemFlagsData::trusted(), end, address, 0);
+            }
+        }
+        let decoration = enclosures::decoration(&mut self.writer, enclosure.known);
+        let addresses = self.elements(offset_of!(Places, output_decoration), size_of::<Decoration>(), place);
+        for (lane, address) in addresses.into_iter().enumerate() {
+            let decoration = self.writer.builder.ins().extractlane(decoration, lane as u8);
+            self.writer.builder.ins().istore8(MemFlagsData::trusted(), decoration, address, 0);
+        }
+    }
+
+    /// The addresses of the element at `place` and of the one `second` after it, in the array to which the pointer at
+    /// `offset` in [`Places`] points.
+    fn elements(&mut self, offset: usize, size: usize, place: Value) -> [Value; 2] {
+        let ins = &mut self.writer.builder;
+        let array = ins.ins().load(types::I64, MemFlagsData::trusted(), self.places, offset as i32);
+        let distances = [place, self.second].map(|distance| ins.ins().imul_imm_s(distance, size as i64));
+        let first = ins.ins().iadd(array, distances[0]);
+        [first, ins.ins().iadd(first, distances[1])]
+    }
+}
