@@ -32,7 +32,7 @@ pub fn normals(
         rays.len() == outcomes.len() && rays.len() == normals.len(),
         "each ray has an outcome and a normal"
     );
-    let Workspace { scratch, counters, points } = workspace;
+    let Workspace { scratch, counters, points, .. } = workspace;
     normals.fill(DVec3::NAN);
     let mut met: Vec<Met> = rays.iter().zip(outcomes).enumerate().filter_map(Met::new).collect();
     if met.is_empty() {

@@ -3,6 +3,7 @@
 use iso_expr::Scratch;
 
 use crate::batch::PointBatch;
+use crate::certified::{Ahead, Entry};
 use crate::{Counters, Ray, Span};
 
 /// A point of the surface on a ray.
@@ -47,4 +48,8 @@ pub struct Workspace {
     pub counters: Counters,
     /// Points for the kernels, and their values.
     pub(crate) points: PointBatch,
+    /// What lies ahead of a certified search.
+    pub(crate) ahead: Vec<Ahead>,
+    /// Which cells a certified search is to enter.
+    pub(crate) entries: Vec<Entry>,
 }

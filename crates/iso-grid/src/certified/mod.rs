@@ -1,20 +1,28 @@
 //! Certified intersection: every ray ends with a proof, or says where the proof stopped. Nothing is to be tuned.
 
+mod cells;
 mod classify;
 mod clip;
+mod kernels;
 mod line;
 mod newton;
 mod search;
 mod side;
+mod walk;
 
 use std::sync::Arc;
 
 use iso_expr::{CompileError, Program};
 
-use crate::{Counters, Outcome, Ray, Region, Surface, Tracer, Workspace};
+use crate::{Counters, Outcome, Ray, Region, Span, Surface, Tracer, Workspace};
+use cells::Cells;
 use clip::Clip;
-use line::{Kernels, Line};
+use kernels::Kernels;
+use line::Line;
+pub(crate) use search::Ahead;
 use search::Search;
+pub(crate) use walk::Entry;
+use walk::Walk;
 
 /// The method that proves what it says, by interval arithmetic rounded outwards.
 ///
@@ -28,13 +36,18 @@ use search::Search;
 ///   possible root next to a jump, a pole or an edge of the domain, on a face of the region, or since too much
 ///   work was done along this ray.
 ///
-/// The ray is searched front to back. A stretch of it is discarded when the enclosure of F excludes zero, over the
+/// The region is a grid of cells, proven empty where they are when a ray first comes by; what is found out is kept, and
+/// spares later rays the search through empty space. It depends on the surface alone, so that the outcome of a ray does
+/// not depend on others.
+///
+/// The ray is searched front to back, cell by cell. A stretch of it is discarded when the enclosure of F excludes zero, over the
 /// stretch as a whole, by the slope from its ends, or piece by piece around poles and jumps. It is a crossing when F
 /// is monotone and changes sign, and then the interval Newton method encloses the root. Else it is cut into parts.
 pub struct Certified {
     kernels: Kernels,
     program: Program,
     region: Region,
+    cells: Cells,
     accuracy: f64,
 }
 
@@ -53,6 +66,7 @@ impl Certified {
                 gradients: Arc::clone(surface.gradient_enclosures()?),
             },
             program: surface.program().clone(),
+            cells: Cells::new(&region),
             region,
             accuracy: Self::ACCURACY,
         })
@@ -64,10 +78,23 @@ impl Certified {
     }
 }
 
+impl Certified {
+    /// How the search along a ray ends, if it begins with `stretch` and goes no further.
+    fn search(&self, workspace: &mut Workspace, ray: Ray, clip: Clip, stretch: Span) -> Outcome {
+        let Workspace { scratch, counters, ahead, entries, .. } = workspace;
+        let line = Line { kernels: &self.kernels, scratch, ray, evaluations: 0 };
+        let walk = Walk { cells: &self.cells, ray, pending: entries, evaluations: 0, steps: 0 };
+        let mut search = Search { line, program: &self.program, accuracy: self.accuracy, clip, walk, ahead };
+        let outcome = search.run(stretch);
+        counters.box_evaluations += search.line.evaluations + search.walk.evaluations;
+        counters.steps += search.walk.steps;
+        outcome
+    }
+}
+
 impl Tracer for Certified {
     fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]) {
         assert_eq!(rays.len(), outcomes.len());
-        let mut ahead = Vec::new();
         for (ray, outcome) in rays.iter().zip(outcomes) {
             workspace.counters.rays += 1;
             let Some(clip) = Clip::new(&self.region, ray) else {
@@ -75,12 +102,7 @@ impl Tracer for Certified {
                 continue;
             };
             workspace.counters.rays_in_region += 1;
-            let line =
-                Line { kernels: &self.kernels, scratch: &mut workspace.scratch, ray: *ray, evaluations: 0 };
-            let mut search =
-                Search { line, program: &self.program, accuracy: self.accuracy, clip, ahead: &mut ahead };
-            *outcome = search.run();
-            workspace.counters.box_evaluations += search.line.evaluations;
+            *outcome = self.search(workspace, *ray, clip, clip.outer);
         }
     }
 

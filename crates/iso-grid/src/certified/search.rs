@@ -7,6 +7,7 @@ use super::classify::{Finding, classify, free_of_zero};
 use super::clip::Clip;
 use super::line::Line;
 use super::side::side;
+use super::walk::Walk;
 use crate::{Hit, Outcome, Span};
 
 /// Into how many parts an open stretch is cut.
@@ -22,8 +23,9 @@ const WORK_LIMIT: u64 = 1 << 14;
 /// How many pieces of F around its poles and jumps are looked at before the search goes on without them.
 const PIECES: usize = 32;
 
-/// How often an interval that cannot be split is widened to see whether a simple root hides in the rounding.
-const WIDENINGS: u32 = 8;
+/// How often a stretch that cannot be split is widened, each time by four times as much, to see whether a simple root
+/// hides in the rounding.
+const WIDENINGS: u32 = 12;
 
 /// The search along one ray.
 pub(super) struct Search<'a> {
@@ -31,23 +33,26 @@ pub(super) struct Search<'a> {
     pub(super) program: &'a Program,
     pub(super) accuracy: f64,
     pub(super) clip: Clip,
-    /// What lies ahead, the nearest on top. Everything before it is free of roots, and so is all between.
+    /// The way through the cells that are not empty.
+    pub(super) walk: Walk<'a>,
+    /// What lies ahead in the cell that is looked at, the nearest on top. Everything before it is free of roots, and so is
+    /// all between.
     pub(super) ahead: &'a mut Vec<Ahead>,
 }
 
 /// A stretch that may hold roots.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ahead {
+pub(crate) struct Ahead {
     stretch: Span,
     finding: Finding,
 }
 
 impl Search<'_> {
-    /// How the search ends. Everything before the end is proven.
-    pub(super) fn run(&mut self) -> Outcome {
+    /// How the search over `stretch`, a part of the ray, ends. Everything before the end is proven.
+    pub(super) fn run(&mut self, stretch: Span) -> Outcome {
         self.ahead.clear();
-        self.ahead.push(Ahead { stretch: self.clip.outer, finding: Finding::Open });
-        while let Some(Ahead { stretch, finding }) = self.ahead.pop() {
+        self.walk.begin(stretch);
+        while let Some(Ahead { stretch, finding }) = self.next() {
             if self.line.evaluations >= WORK_LIMIT {
                 return Outcome::Undecided(Span { start: stretch.start, end: self.clip.outer.end });
             }
@@ -67,6 +72,15 @@ impl Search<'_> {
         Outcome::Miss
     }
 
+    /// The nearest stretch that may hold roots.
+    fn next(&mut self) -> Option<Ahead> {
+        while self.ahead.is_empty() {
+            let Span { start, end } = self.walk.next(self.line.kernels, self.program, self.line.scratch)?;
+            self.examine(&[start, end]);
+        }
+        self.ahead.pop()
+    }
+
     /// How wide the enclosure of a root in `stretch` may be: never wider than the ray's scale allows.
     fn tolerance(&self, stretch: Span) -> f64 {
         let scale = self.clip.outer.end;
@@ -83,18 +97,29 @@ impl Search<'_> {
     fn divide(&mut self, stretch: Span) {
         let length = stretch.end - stretch.start;
         let mut ends = [stretch.start; PARTS + 1];
-        for (cut, fraction) in CUTS.iter().enumerate() {
-            ends[cut + 1] = stretch.start + fraction * length;
+        for (end, fraction) in ends[1..].iter_mut().zip(CUTS) {
+            *end = stretch.start + fraction * length;
         }
         ends[PARTS] = stretch.end;
-        let parts: [Span; PARTS] =
-            std::array::from_fn(|part| Span { start: ends[part], end: ends[part + 1] });
+        self.examine(&ends);
+    }
 
-        let values = self.line.values(&parts);
+    /// Looks at the stretches between neighbouring `ends`, no more than [`PARTS`], and puts what of them may hold roots
+    /// ahead.
+    fn examine(&mut self, ends: &[f64]) {
+        let count = ends.len() - 1;
+        let parts: [Span; PARTS] = std::array::from_fn(|part| {
+            let part = part.min(count - 1);
+            Span { start: ends[part], end: ends[part + 1] }
+        });
+        let values = self.line.values(&parts[..count]);
         let open = |part: &usize| !free_of_zero(values[*part].interval);
-        let (Some(first), Some(last)) = ((0..PARTS).find(open), (0..PARTS).rev().find(open)) else { return };
+        let (Some(first), Some(last)) = ((0..count).find(open), (0..count).rev().find(open)) else { return };
         let courses = self.line.courses(&parts[first..=last]);
-        let points: [Span; PARTS + 1] = ends.map(|t| Span { start: t, end: t });
+        let points: [Span; PARTS + 1] = std::array::from_fn(|end| {
+            let t = ends[end.min(count)];
+            Span { start: t, end: t }
+        });
         let at_ends = self.line.values(&points[first..=last + 1]);
 
         for part in (first..=last).rev().filter(open) {
@@ -127,11 +152,12 @@ impl Search<'_> {
             match classify(wide, course, before.value.interval, after.value.interval) {
                 None => return None,
                 Some((narrowed, Finding::Crossing)) => return self.place(narrowed),
-                Some(_) => margin *= 2.0,
+                Some(_) => margin *= 4.0,
             }
             let (falls, rises) = (side(before.slope.interval), side(after.slope.interval));
-            if valley.is_none() && falls.is_some() && rises.is_some() && falls != rises {
+            if falls.is_some() && rises.is_some() && falls != rises {
                 valley = Some(wide);
+                break;
             }
         }
         if !value.interval.is_bounded() {

@@ -27,7 +27,7 @@ pub(crate) fn trace<S: Stretches>(
     stretches: impl Fn(&Ray, Span) -> S,
 ) {
     assert_eq!(rays.len(), outcomes.len(), "each ray has an outcome");
-    let Workspace { scratch, counters, points } = workspace;
+    let Workspace { scratch, counters, points, .. } = workspace;
     counters.rays += rays.len() as u64;
     outcomes.fill(Outcome::Miss);
     let mut waiting = rays.iter().enumerate().filter_map(|(place, ray)| {
