@@ -8,6 +8,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use iso_expr::{Engine, Interpreter};
 use iso_grid::{Certified, Hit, Outcome, Ray, Tracer, Workspace, normals};
+use iso_jit::Jit;
 use scenes::rounding::Rounding;
 use scenes::{Scene, Status, Verdict};
 
@@ -37,6 +38,11 @@ const EXCEPTIONS: &[Exception] = &[
 #[test]
 fn interpreter_proves_what_the_oracle_says() {
     compare(Arc::new(Interpreter));
+}
+
+#[test]
+fn native_code_proves_what_the_oracle_says() {
+    compare(Arc::new(Jit::new().expect("this machine is one that code is made for")));
 }
 
 /// Traces every ray of every scene. All that is wrong is told at once.

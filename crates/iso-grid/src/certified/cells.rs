@@ -1,11 +1,11 @@
 //! The certified grid: cells of the region that are proven to hold no root, found when a ray first comes by and kept.
 
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicU16, Ordering};
 
 use iso_expr::{Decorated, Decoration, Interval, Program, Scratch};
 
 use super::classify::free_of_zero;
-use super::kernels::{BATCH, Bounds, Jet, Kernels};
+use super::kernels::{Bounds, Jet, Kernels};
 use crate::Region;
 
 /// How often the region is halved along each axis: 32 cells along each at last.
@@ -21,44 +21,37 @@ const PIECES: usize = 16;
 pub(super) struct Cells {
     /// The planes between the smallest cells, along each axis, the region's faces included.
     planes: [Vec<f64>; 3],
-    /// What is known of each cell of each size, the largest first.
-    states: Vec<AtomicU8>,
+    /// For each cell but the smallest: which of its parts are empty, one bit each, and [`KNOWN`] once that has been asked.
+    empty_parts: Vec<AtomicU16>,
 }
 
-/// A cell: how often the region is halved to get it, and its place among the cells of this size.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Set when the parts of a cell have been looked at.
+const KNOWN: u16 = 1 << PARTS;
+
+/// A cell is made of eight: bit 0 of a part's number is set for the half with the larger x, bit 1 for y, bit 2 for z.
+pub(super) const PARTS: usize = 8;
+
+/// A cell.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Cell {
+    /// How often the region is halved to get it.
     pub(super) depth: u32,
-    pub(super) place: [u32; 3],
-}
-
-/// What is known of a cell. A cell of the region is asked about before its parts, all eight of them at once.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-enum State {
-    Unknown,
-    /// No point of it, faces included, is a root.
-    Empty,
-    Open,
+    /// Its place along each axis among the cells of its size.
+    place: [u32; 3],
+    /// Its place in the tree, in which the parts of cell n are the cells from 8n + 1 on.
+    node: usize,
 }
 
 impl Cell {
     /// The whole region.
-    pub(super) const REGION: Self = Self { depth: 0, place: [0; 3] };
+    pub(super) const REGION: Self = Self { depth: 0, place: [0; 3], node: 0 };
 
-    /// The eight parts: bit 0 of the number is set for the half with the larger x, bit 1 for y, bit 2 for z.
-    pub(super) fn parts(self) -> [Self; 8] {
-        std::array::from_fn(|number| Self {
+    pub(super) fn part(self, number: usize) -> Self {
+        Self {
             depth: self.depth + 1,
-            place: [0, 1, 2].map(|axis| 2 * self.place[axis] + (number as u32 >> axis & 1)),
-        })
-    }
-
-    /// Its place in the table.
-    fn index(self) -> usize {
-        let larger = ((1 << (3 * self.depth)) - 1) / 7;
-        let [x, y, z] = self.place;
-        larger + (x + ((y + (z << self.depth)) << self.depth)) as usize
+            place: std::array::from_fn(|axis| 2 * self.place[axis] + (number >> axis & 1) as u32),
+            node: PARTS * self.node + 1 + number,
+        }
     }
 }
 
@@ -70,40 +63,44 @@ impl Cells {
             let plane = |number| min + (max - min) * (f64::from(number) / f64::from(count));
             (0..=count).map(|number| if number == count { max } else { plane(number) }).collect()
         });
-        let smallest = Cell { depth: DEPTH + 1, place: [0; 3] };
-        let states = (0..smallest.index()).map(|_| AtomicU8::new(State::Unknown as u8)).collect();
-        Self { planes, states }
+        // 1 + 8 + 64 + … cells have parts.
+        let divided = ((1 << (3 * DEPTH)) - 1) / (PARTS - 1);
+        Self { planes, empty_parts: (0..divided).map(|_| AtomicU16::new(0)).collect() }
     }
 
-    /// The plane along `axis` where the cell begins, and the one where it ends.
-    pub(super) fn side(&self, cell: Cell, axis: usize) -> Interval {
-        let finest = |place: u32| self.planes[axis][(place << (DEPTH - cell.depth)) as usize];
-        Interval { lo: finest(cell.place[axis]), hi: finest(cell.place[axis] + 1) }
+    /// The plane along `axis` between the halves of a cell.
+    pub(super) fn middle(&self, cell: Cell, axis: usize) -> f64 {
+        self.planes[axis][((2 * cell.place[axis] + 1) << (DEPTH - 1 - cell.depth)) as usize]
     }
 
     fn bounds(&self, cell: Cell) -> Bounds {
-        [0, 1, 2].map(|axis| self.side(cell, axis))
+        [0, 1, 2].map(|axis| {
+            let plane = |place: u32| self.planes[axis][(place << (DEPTH - cell.depth)) as usize];
+            Interval { lo: plane(cell.place[axis]), hi: plane(cell.place[axis] + 1) }
+        })
     }
 
-    /// Which of the parts of a cell are empty, by number, and how many boxes were enclosed to find out.
+    /// Which of the parts of a cell are empty, bit by bit: no point of them, faces included, is a root. Adds to
+    /// `evaluations` how many boxes were enclosed to find out.
     pub(super) fn empty_parts(
         &self,
         kernels: &Kernels,
         program: &Program,
         scratch: &mut Scratch,
-        parts: &[Cell; 8],
-    ) -> ([bool; 8], u64) {
-        let states = parts.map(|part| self.states[part.index()].load(Ordering::Relaxed));
-        if !states.contains(&(State::Unknown as u8)) {
-            return (states.map(|state| state == State::Empty as u8), 0);
+        evaluations: &mut u64,
+        cell: Cell,
+    ) -> u16 {
+        let known = self.empty_parts[cell.node].load(Ordering::Relaxed);
+        if known & KNOWN != 0 {
+            return known;
         }
-        let bounds = parts.map(|part| self.bounds(part));
-        let (empty, boxes) = prove_empty(kernels, program, scratch, &bounds);
-        for (part, empty) in parts.iter().zip(empty) {
-            let state = if empty { State::Empty } else { State::Open };
-            self.states[part.index()].store(state as u8, Ordering::Relaxed);
-        }
-        (empty, boxes)
+        let bounds = std::array::from_fn(|number| self.bounds(cell.part(number)));
+        let (empty, enclosed) = prove_empty(kernels, program, scratch, &bounds);
+        *evaluations += enclosed;
+        let found =
+            (0..PARTS).filter(|number| empty[*number]).fold(KNOWN, |found, number| found | 1 << number);
+        self.empty_parts[cell.node].store(found, Ordering::Relaxed);
+        found
     }
 }
 
@@ -112,12 +109,12 @@ fn prove_empty(
     kernels: &Kernels,
     program: &Program,
     scratch: &mut Scratch,
-    boxes: &[Bounds; BATCH],
-) -> ([bool; BATCH], u64) {
+    boxes: &[Bounds; PARTS],
+) -> ([bool; PARTS], u64) {
     let jets = kernels.jets(scratch, boxes);
     let centers = boxes.map(|bounds| bounds.map(|side| Interval::point(side.midpoint())));
     let at_centers = kernels.values(scratch, &centers);
-    let mut enclosures = 2 * BATCH as u64;
+    let mut enclosures = 2 * PARTS as u64;
     let empty = std::array::from_fn(|place| {
         let value = jets[place].value;
         if free_of_zero(value.interval) {

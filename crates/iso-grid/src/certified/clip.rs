@@ -41,7 +41,7 @@ impl Clip {
 }
 
 /// Encloses (face − origin) / direction.
-pub(super) fn crossing(face: f64, origin: f64, direction: f64) -> Span {
+fn crossing(face: f64, origin: f64, direction: f64) -> Span {
     if face == origin {
         return Span { start: 0.0, end: 0.0 };
     }

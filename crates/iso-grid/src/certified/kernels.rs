@@ -24,7 +24,9 @@ pub(super) struct Jet {
     pub(super) gradient: [Decorated; 3],
 }
 
-const NOTHING_KNOWN: Decorated = Decorated { interval: Interval::ENTIRE, decoration: Decoration::Trivial };
+/// What holds for every function.
+pub(super) const NOTHING_KNOWN: Decorated =
+    Decorated { interval: Interval::ENTIRE, decoration: Decoration::Trivial };
 
 impl Kernels {
     /// Encloses F over each of the boxes; what stands behind their number means nothing.

@@ -3,7 +3,7 @@
 use iso_expr::interval::{round_down, round_up};
 use iso_expr::{Decorated, Decoration, Interval, Scratch};
 
-use super::kernels::{BATCH, Bounds, Jet, Kernels};
+use super::kernels::{BATCH, Bounds, Jet, Kernels, NOTHING_KNOWN};
 use crate::{Ray, Span};
 
 /// F along a ray. All enclosures hold for every real t of a stretch and every point o + t·d exactly.
@@ -41,7 +41,11 @@ impl Line<'_> {
         self.evaluations += stretches.len() as u64;
         let boxes = self.boxes(stretches);
         let jets = self.kernels.jets(self.scratch, &boxes[..stretches.len()]);
-        jets.map(|Jet { value, gradient }| Course { value, slope: self.slope(gradient) })
+        let mut courses = [Course { value: NOTHING_KNOWN, slope: NOTHING_KNOWN }; BATCH];
+        for (course, Jet { value, gradient }) in courses.iter_mut().zip(jets).take(stretches.len()) {
+            *course = Course { value, slope: self.slope(gradient) };
+        }
+        courses
     }
 
     /// Encloses F and its slope over a stretch.

@@ -83,9 +83,9 @@ impl Certified {
     fn search(&self, workspace: &mut Workspace, ray: Ray, clip: Clip, stretch: Span) -> Outcome {
         let Workspace { scratch, counters, ahead, entries, .. } = workspace;
         let line = Line { kernels: &self.kernels, scratch, ray, evaluations: 0 };
-        let walk = Walk { cells: &self.cells, ray, pending: entries, evaluations: 0, steps: 0 };
+        let walk = Walk::new(&self.cells, ray, stretch, entries);
         let mut search = Search { line, program: &self.program, accuracy: self.accuracy, clip, walk, ahead };
-        let outcome = search.run(stretch);
+        let outcome = search.run();
         counters.box_evaluations += search.line.evaluations + search.walk.evaluations;
         counters.steps += search.walk.steps;
         outcome

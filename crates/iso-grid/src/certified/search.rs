@@ -48,10 +48,9 @@ pub(crate) struct Ahead {
 }
 
 impl Search<'_> {
-    /// How the search over `stretch`, a part of the ray, ends. Everything before the end is proven.
-    pub(super) fn run(&mut self, stretch: Span) -> Outcome {
+    /// How the search along the walk ends. Everything before the end is proven.
+    pub(super) fn run(&mut self) -> Outcome {
         self.ahead.clear();
-        self.walk.begin(stretch);
         while let Some(Ahead { stretch, finding }) = self.next() {
             if self.line.evaluations >= WORK_LIMIT {
                 return Outcome::Undecided(Span { start: stretch.start, end: self.clip.outer.end });
