@@ -4,8 +4,10 @@ use std::borrow::Cow;
 use std::ffi::OsStr;
 use std::fs;
 use std::io::{self, Read};
+use std::sync::Arc;
 
-use iso_expr::{Ast, Formula, FormulaError, Program};
+use iso_expr::{Ast, Engine, Formula, FormulaError, Program};
+use iso_grid::Surface;
 
 use crate::failure::Failure;
 use crate::flags::FormulaFlags;
@@ -98,5 +100,10 @@ impl Programs {
         let value = value.simplified();
         let value_and_gradient = value.with_gradient().simplified();
         Self { value, value_and_gradient }
+    }
+
+    /// The surface, to be compiled by `engine`.
+    pub(crate) fn surface(&self, engine: Arc<dyn Engine>) -> Surface {
+        Surface::new(engine, self.value.clone(), self.value_and_gradient.clone())
     }
 }

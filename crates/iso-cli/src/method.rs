@@ -1,7 +1,9 @@
 //! The methods of intersection, from flags to tracers.
 
 use iso_expr::CompileError;
-use iso_grid::{Certified, Direct, Grid, GridError, GridSettings, Octree, Region, Surface, Tracer};
+use iso_grid::{
+    Certified, Direct, Grid, GridError, GridSettings, Octree, Region, Surface, Tracer, Workspace,
+};
 
 use crate::failure::Failure;
 use crate::flags::{MethodFlags, MethodName};
@@ -100,6 +102,11 @@ impl Method {
             Self::Direct { step } => Box::new(Direct::new(surface, region, *step)?),
         })
     }
+}
+
+/// The region that was asked for, else one that fits the surface.
+pub(crate) fn region(given: Option<Region>, surface: &Surface) -> Result<Region, CompileError> {
+    given.map_or_else(|| Region::fitted(surface, &mut Workspace::default()), Ok)
 }
 
 /// The paper's settings, but for what `flags` say.

@@ -8,7 +8,7 @@ use std::time::Duration;
 use glam::DVec3;
 use iso_expr::engine::Points;
 use iso_expr::{CompileError, Engine, Scratch};
-use iso_grid::{Region, Surface};
+use iso_grid::Region;
 use iso_render::{Camera, Layers, Projection, Scene, Shading, Size, View, render};
 use serde::Serialize;
 
@@ -17,7 +17,7 @@ use crate::engine::{engine, threads};
 use crate::failure::Failure;
 use crate::flags::{BenchFlags, EngineName};
 use crate::formula::{Programs, minus_level, understand};
-use crate::method::Method;
+use crate::method::{Method, region};
 use crate::output::to_standard_output;
 
 /// Points at which the formula is evaluated.
@@ -28,12 +28,14 @@ const LONG_ENOUGH: Duration = Duration::from_millis(5);
 /// Measures both engines.
 pub(crate) fn run(flags: BenchFlags) -> Result<(), Failure> {
     let formula = understand(&flags.formula)?;
+    let programs = Programs::new(&minus_level(&formula, flags.level.level)?);
+    let region = region(flags.method.region, &programs.surface(engine(EngineName::Interp)?))?;
     let bench = Bench {
-        programs: Programs::new(&minus_level(&formula, flags.level.level)?),
+        programs,
         method: Method::resolve(&flags.method)?,
-        region: flags.method.region,
+        region,
         size: flags.measurement.size,
-        points: spread_points(&flags.method.region),
+        points: spread_points(&region),
     };
     let runs = flags.measurement.runs.get() as usize;
     let report = threads(&flags.threads)?.install(|| bench.report(runs))?;
@@ -130,8 +132,7 @@ impl Bench {
 
     /// The times of compiling a picture's kernels, and of everything else up to its colours.
     fn picture(&self, engine: &Arc<dyn Engine>) -> Result<(Duration, Duration), Failure> {
-        let Programs { value, value_and_gradient } = self.programs.clone();
-        let surface = Surface::new(Arc::clone(engine), value, value_and_gradient);
+        let surface = self.programs.surface(Arc::clone(engine));
         let (compiled, compile) = timed(|| self.method.compile(&surface));
         compiled?;
         let (drawn, picture) = timed(|| {

@@ -5,16 +5,16 @@ use std::sync::Arc;
 
 use iso_expr::Engine;
 use iso_grid::{Counters, Region, Surface};
-use iso_render::{Camera, Picture, Scene, Shading, Size, render};
+use iso_render::{Picture, Scene, Shading, Size, render};
 use rayon::ThreadPool;
 
 use crate::camera::camera;
 use crate::clock::{Phases, add_to};
 use crate::engine::{engine, threads};
 use crate::failure::Failure;
-use crate::flags::RenderFlags;
+use crate::flags::{CameraFlags, RenderFlags};
 use crate::formula::{Programs, Source, minus_level};
-use crate::method::Method;
+use crate::method::{Method, region};
 use crate::output::to_standard_output;
 use crate::pictures::PictureFiles;
 use crate::progress::Progress;
@@ -39,9 +39,9 @@ pub(crate) fn run(flags: RenderFlags) -> Result<(), Failure> {
 /// What is to be drawn, how, and where it goes: all that flags and files say, checked.
 struct Request {
     programs: Programs,
-    region: Region,
+    region: Option<Region>,
     method: Method,
-    camera: Camera,
+    camera: CameraFlags,
     size: Size,
     shows_status: bool,
     files: PictureFiles,
@@ -60,9 +60,7 @@ enum Speech {
 
 impl Request {
     fn resolve(flags: RenderFlags, phases: &mut Phases) -> Result<Self, Failure> {
-        let (region, size) = (flags.method.region, flags.output.size);
         let method = Method::resolve(&flags.method)?;
-        let camera = camera(&flags.camera, &region, size)?;
         let files = PictureFiles::resolve(&flags.output)?;
         let speech = match (flags.output.json, flags.output.quiet) {
             (true, _) => Speech::Json,
@@ -76,10 +74,10 @@ impl Request {
         })?;
         Ok(Self {
             programs,
-            region,
+            region: flags.method.region,
             method,
-            camera,
-            size,
+            camera: flags.camera,
+            size: flags.output.size,
             shows_status: flags.output.show_status,
             files,
             speech,
@@ -90,10 +88,10 @@ impl Request {
 
     /// Draws the picture and writes its files.
     fn fulfil(&self, mut phases: Phases) -> Result<Summary, Failure> {
-        let Programs { value, value_and_gradient } = self.programs.clone();
-        let (operations, gradient_operations) = (value.operations(), value_and_gradient.operations());
-        let surface = Surface::new(Arc::clone(&self.engine), value, value_and_gradient);
-        let (picture, preprocessing) = self.threads.install(|| self.draw(&surface, &mut phases))?;
+        let surface = self.programs.surface(Arc::clone(&self.engine));
+        add_to(&mut phases.compile, || self.method.compile(&surface))?;
+        let region = add_to(&mut phases.preprocess, || region(self.region, &surface))?;
+        let (picture, preprocessing) = self.threads.install(|| self.draw(&surface, region, &mut phases))?;
         add_to(&mut phases.encode, || self.files.write(&picture))?;
         let mut counters = picture.counters;
         counters += preprocessing;
@@ -101,13 +99,13 @@ impl Request {
             files: self.files.names(),
             width: self.size.width(),
             height: self.size.height(),
-            box_min: self.region.min().to_array(),
-            box_max: self.region.max().to_array(),
+            box_min: region.min().to_array(),
+            box_max: region.max().to_array(),
             method: self.method.name(),
             engine: self.engine.name(),
             threads: self.threads.current_num_threads(),
-            operations,
-            gradient_operations,
+            operations: self.programs.value.operations(),
+            gradient_operations: self.programs.value_and_gradient.operations(),
             pixels: picture.counts,
             counters,
             milliseconds: phases,
@@ -115,11 +113,16 @@ impl Request {
     }
 
     /// The picture, and the work of preprocessing.
-    fn draw(&self, surface: &Surface, phases: &mut Phases) -> Result<(Picture, Counters), Failure> {
-        add_to(&mut phases.compile, || self.method.compile(surface))?;
-        let tracer = add_to(&mut phases.preprocess, || self.method.prepare(surface, self.region))?;
-        let shading = Shading::new(&self.camera, self.shows_status);
-        let scene = Scene { surface, tracer: tracer.as_ref(), camera: &self.camera, shading: &shading };
+    fn draw(
+        &self,
+        surface: &Surface,
+        region: Region,
+        phases: &mut Phases,
+    ) -> Result<(Picture, Counters), Failure> {
+        let camera = camera(&self.camera, &region, self.size)?;
+        let tracer = add_to(&mut phases.preprocess, || self.method.prepare(surface, region))?;
+        let shading = Shading::new(&camera, self.shows_status);
+        let scene = Scene { surface, tracer: tracer.as_ref(), camera: &camera, shading: &shading };
         let progress = Progress::new(self.speech == Speech::Line);
         let report = |done, all| progress.report(done, all);
         let picture = render(&scene, self.size, self.files.layers(), &report);

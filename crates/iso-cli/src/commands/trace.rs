@@ -13,7 +13,7 @@ use crate::engine::{engine, threads};
 use crate::failure::Failure;
 use crate::flags::TraceFlags;
 use crate::formula::{Programs, minus_level, understand};
-use crate::method::Method;
+use crate::method::{Method, region};
 use crate::output::Destination;
 use crate::pictures::status_name;
 use crate::table::{self, TableError, digits, write_row};
@@ -28,9 +28,9 @@ pub(crate) fn run(flags: TraceFlags) -> Result<(), Failure> {
     let formula = understand(&flags.formula)?;
     let programs = Programs::new(&minus_level(&formula, flags.level.level)?);
     let rays = read_rays(&flags.tables.rays)?;
-    let surface = Surface::new(engine(flags.engine.engine)?, programs.value, programs.value_and_gradient);
+    let surface = programs.surface(engine(flags.engine.engine)?);
     let followed = threads(&flags.threads)?.install(|| {
-        let tracer = method.prepare(&surface, flags.method.region)?;
+        let tracer = method.prepare(&surface, region(flags.method.region, &surface)?)?;
         Ok::<_, Failure>(follow(&surface, tracer.as_ref(), &rays)?)
     })?;
     destination.write(|writer| {

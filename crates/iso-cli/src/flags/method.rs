@@ -9,12 +9,11 @@ use crate::values;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Region and method")]
 pub(crate) struct MethodFlags {
-    /// The box in which the surface is looked for
+    /// The box in which the surface is looked for [default: one that fits it, or -2,2 where it goes on for ever]
     ///
     /// `a,b` reaches from a to b along every axis; six numbers are xmin,ymin,zmin,xmax,ymax,zmax.
     #[arg(long = "box", value_name = "BOX", value_parser = values::region, allow_hyphen_values = true)]
-    #[arg(default_value = "-2,2")]
-    pub(crate) region: Region,
+    pub(crate) region: Option<Region>,
 
     /// The method of intersection
     #[arg(long, value_name = "METHOD", value_enum, default_value_t = MethodName::Certified)]
