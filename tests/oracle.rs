@@ -12,7 +12,7 @@ use iso_jit::Jit;
 use scenes::rounding::Rounding;
 use scenes::{Scene, Status, Verdict};
 
-/// Rays that end as `touch` or `undecided` though the independent program, with its 256 bits, says more.
+/// How many rays may end as `touch` or `undecided` though the independent program, with its 256 bits, says more.
 struct Exception {
     scene: &'static str,
     touches: usize,
@@ -37,7 +37,36 @@ const EXCEPTIONS: &[Exception] = &[
 
 #[test]
 fn interpreter_proves_what_the_oracle_says() {
-    compare(Arc::new(Interpreter));
+    compare(Arc::new(Interpreter), |tracer, workspace, rays, outcomes| {
+        tracer.trace(workspace, rays, outcomes)
+    });
+}
+
+#[test]
+fn tiles_prove_what_the_oracle_says() {
+    compare(Arc::new(Interpreter), trace_pictures);
+}
+
+/// A way to trace all rays of a scene.
+type Trace = fn(&Certified, &mut Workspace, &[Ray], &mut [Outcome]);
+
+/// The sides of the square pictures whose rays make up a scene, one after the other; not all scenes have the last one.
+const SIDES: [usize; 3] = [24, 16, 12];
+
+/// Traces each of the pictures that make up a scene as one tile.
+fn trace_pictures(
+    tracer: &Certified,
+    workspace: &mut Workspace,
+    mut rays: &[Ray],
+    mut outcomes: &mut [Outcome],
+) {
+    for side in SIDES {
+        let (tile, other_rays) = rays.split_at(rays.len().min(side * side));
+        let (ends, other_outcomes) = outcomes.split_at_mut(tile.len());
+        tracer.trace_tile(workspace, side, tile, ends);
+        (rays, outcomes) = (other_rays, other_outcomes);
+    }
+    assert!(rays.is_empty(), "a scene has three pictures");
 }
 
 #[test]
@@ -46,10 +75,10 @@ fn native_code_proves_what_the_oracle_says() {
 }
 
 /// Traces every ray of every scene. All that is wrong is told at once.
-fn compare(engine: Arc<dyn Engine>) {
+fn compare(engine: Arc<dyn Engine>, trace: Trace) {
     let (mut wrong, mut classic_rays, mut classic_undecided) = (Vec::new(), 0, 0);
     for scene in scenes::all() {
-        let comparison = Comparison::of(&scene, Arc::clone(&engine));
+        let comparison = Comparison::of(&scene, Arc::clone(&engine), trace);
         println!("{comparison}");
         if scene.tags.iter().any(|tag| tag == "classic") {
             classic_rays += comparison.rays;
@@ -61,9 +90,9 @@ fn compare(engine: Arc<dyn Engine>) {
             .map_or((0, 0, "all can be decided"), |exception| {
                 (exception.touches, exception.undecided, exception.reason)
             });
-        if comparison.touches != touches || comparison.undecided != undecided {
+        if comparison.touches > touches || comparison.undecided > undecided {
             wrong.push(format!(
-                "{}: {} touches and {} undecided, expected {touches} and {undecided} ({reason})",
+                "{}: {} touches and {} undecided, allowed {touches} and {undecided} ({reason})",
                 scene.name, comparison.touches, comparison.undecided
             ));
         }
@@ -94,14 +123,14 @@ struct Comparison {
 }
 
 impl Comparison {
-    fn of(scene: &Scene, engine: Arc<dyn Engine>) -> Self {
+    fn of(scene: &Scene, engine: Arc<dyn Engine>, trace: Trace) -> Self {
         let surface = scene.surface(engine);
         let tracer = Certified::new(&surface, scene.region()).expect("the scenes compile");
         let verdicts = scene.verdicts();
         let rays: Vec<Ray> = verdicts.iter().map(|verdict| verdict.ray).collect();
         let mut workspace = Workspace::default();
         let mut outcomes = vec![Outcome::Miss; rays.len()];
-        tracer.trace(&mut workspace, &rays, &mut outcomes);
+        trace(&tracer, &mut workspace, &rays, &mut outcomes);
         let mut found = vec![DVec3::NAN; rays.len()];
         normals(&surface, &mut workspace, &rays, &outcomes, &mut found).expect("the scenes compile");
 

@@ -1,7 +1,8 @@
-//! Points gathered for one call of a kernel.
+//! Points, or boxes, gathered for one call of a kernel.
 
 use glam::DVec3;
-use iso_expr::{BatchKernel, Scratch, engine::Points};
+use iso_expr::engine::{Boxes, Enclosures, Points};
+use iso_expr::{BatchKernel, BoxKernel, Decorated, Decoration, Interval, Scratch};
 
 use crate::Ray;
 
@@ -52,5 +53,79 @@ impl PointBatch {
             kernel.evaluate(scratch, Points { x: &self.x, y: &self.y, z: &self.z }, &mut self.values);
         }
         &self.values
+    }
+}
+
+/// Boxes end by end, and room for what a kernel says of them.
+#[derive(Debug, Default)]
+pub(crate) struct BoxBatch {
+    lo: [Vec<f64>; 3],
+    hi: [Vec<f64>; 3],
+    enclosures: EnclosureBatch,
+}
+
+/// What a kernel says of boxes: output `k` over box `i` of n stands at `k·n + i`.
+#[derive(Debug, Default)]
+pub(crate) struct EnclosureBatch {
+    boxes: usize,
+    lo: Vec<f64>,
+    hi: Vec<f64>,
+    decoration: Vec<Decoration>,
+}
+
+impl BoxBatch {
+    pub(crate) fn clear(&mut self) {
+        self.lo.iter_mut().chain(&mut self.hi).for_each(Vec::clear);
+    }
+
+    /// Adds the box with these corners.
+    pub(crate) fn push(&mut self, lo: DVec3, hi: DVec3) {
+        for axis in 0..3 {
+            self.lo[axis].push(lo[axis]);
+            self.hi[axis].push(hi[axis]);
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.lo[0].len()
+    }
+
+    /// All `outputs` of the kernel over all boxes.
+    pub(crate) fn evaluate(
+        &mut self,
+        kernel: &dyn BoxKernel,
+        scratch: &mut Scratch,
+        outputs: usize,
+    ) -> &EnclosureBatch {
+        let boxes = self.len();
+        let Self { lo, hi, enclosures } = self;
+        enclosures.boxes = boxes;
+        enclosures.lo.resize(outputs * boxes, f64::NAN);
+        enclosures.hi.resize(outputs * boxes, f64::NAN);
+        enclosures.decoration.resize(outputs * boxes, Decoration::Trivial);
+        if boxes > 0 {
+            kernel.evaluate(
+                scratch,
+                Boxes { lo: lo.each_ref().map(Vec::as_slice), hi: hi.each_ref().map(Vec::as_slice) },
+                Enclosures {
+                    lo: &mut enclosures.lo,
+                    hi: &mut enclosures.hi,
+                    decoration: &mut enclosures.decoration,
+                },
+            );
+        }
+        enclosures
+    }
+}
+
+impl EnclosureBatch {
+    pub(crate) fn interval(&self, output: usize, number: usize) -> Interval {
+        let place = output * self.boxes + number;
+        Interval { lo: self.lo[place], hi: self.hi[place] }
+    }
+
+    pub(crate) fn decorated(&self, output: usize, number: usize) -> Decorated {
+        let decoration = self.decoration[output * self.boxes + number];
+        Decorated { interval: self.interval(output, number), decoration }
     }
 }

@@ -2,7 +2,7 @@
 
 use iso_expr::Scratch;
 
-use crate::batch::PointBatch;
+use crate::batch::{BoxBatch, PointBatch};
 use crate::certified::{Ahead, Entry};
 use crate::{Counters, Ray, Span};
 
@@ -35,6 +35,15 @@ pub trait Tracer: Send + Sync {
     /// The outcome of a ray depends on that ray alone, not on its neighbours in the slice, nor on earlier calls.
     fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]);
 
+    /// The same for a tile: neighbouring rays of a picture, `width` in each row, row by row from the top.
+    ///
+    /// A method may share work between the rays of a tile. What it says of each is as true as if it were traced alone, but
+    /// where in its bracket a root is placed, and how wide the bracket is, may depend on the other rays of the tile.
+    fn trace_tile(&self, workspace: &mut Workspace, width: usize, rays: &[Ray], outcomes: &mut [Outcome]) {
+        debug_assert!(width > 0 && rays.len().is_multiple_of(width), "a tile has full rows");
+        self.trace(workspace, rays, outcomes);
+    }
+
     /// What preprocessing took.
     fn preprocessing(&self) -> Counters;
 }
@@ -48,6 +57,8 @@ pub struct Workspace {
     pub counters: Counters,
     /// Points for the kernels, and their values.
     pub(crate) points: PointBatch,
+    /// Boxes for the kernels, and their enclosures.
+    pub(crate) boxes: BoxBatch,
     /// What lies ahead of a certified search.
     pub(crate) ahead: Vec<Ahead>,
     /// Which cells a certified search is to enter.

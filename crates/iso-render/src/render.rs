@@ -41,7 +41,7 @@ pub enum RenderError {
 }
 
 /// Width and height of a tile: small enough to balance cores, large enough to fill batches.
-const TILE: u32 = 32;
+const TILE: u32 = 64;
 
 /// Renders `scene` at `size` on the threads of the current rayon pool, keeping `layers`.
 ///
@@ -121,7 +121,7 @@ impl Tile {
         let rays: Vec<Ray> = pixels().map(|(column, row)| scene.camera.ray(column, row)).collect();
         let mut outcomes = vec![Outcome::Miss; rays.len()];
         workspace.counters = Counters::default();
-        scene.tracer.trace(workspace, &rays, &mut outcomes);
+        scene.tracer.trace_tile(workspace, area.width as usize, &rays, &mut outcomes);
         let traced = Instant::now();
 
         let mut found_normals = Vec::new();

@@ -45,6 +45,8 @@ pub(crate) struct Cell {
 impl Cell {
     /// The whole region.
     pub(super) const REGION: Self = Self { depth: 0, place: [0; 3], node: 0 };
+    /// Stands for any of the smallest cells, of which nothing more is asked.
+    pub(super) const SMALLEST: Self = Self { depth: DEPTH, place: [0; 3], node: 0 };
 
     pub(super) fn part(self, number: usize) -> Self {
         Self {

@@ -1,5 +1,6 @@
 //! Certified intersection: every ray ends with a proof, or says where the proof stopped. Nothing is to be tuned.
 
+mod beams;
 mod cells;
 mod classify;
 mod clip;
@@ -12,10 +13,11 @@ mod walk;
 
 use std::sync::Arc;
 
-use iso_expr::{CompileError, Program};
+use iso_expr::{BatchKernel, CompileError, Program};
 
-use crate::{Counters, Outcome, Ray, Region, Span, Surface, Tracer, Workspace};
-use cells::Cells;
+use crate::{Counters, Outcome, Ray, Region, Surface, Tracer, Workspace};
+use beams::{Bundle, Subdivision};
+use cells::{Cell, Cells};
 use clip::Clip;
 use kernels::Kernels;
 use line::Line;
@@ -45,6 +47,7 @@ use walk::Walk;
 /// is monotone and changes sign, and then the interval Newton method encloses the root. Else it is cut into parts.
 pub struct Certified {
     kernels: Kernels,
+    value_batch: Arc<dyn BatchKernel>,
     program: Program,
     region: Region,
     cells: Cells,
@@ -65,6 +68,7 @@ impl Certified {
                 values: Arc::clone(surface.value_enclosures()?),
                 gradients: Arc::clone(surface.gradient_enclosures()?),
             },
+            value_batch: Arc::clone(surface.values()?),
             program: surface.program().clone(),
             cells: Cells::new(&region),
             region,
@@ -79,11 +83,11 @@ impl Certified {
 }
 
 impl Certified {
-    /// How the search along a ray ends, if it begins with `stretch` and goes no further.
-    fn search(&self, workspace: &mut Workspace, ray: Ray, clip: Clip, stretch: Span) -> Outcome {
+    /// How the search along a ray ends, if it begins with `entry`, a stretch in a cell, and goes no further.
+    fn search(&self, workspace: &mut Workspace, ray: Ray, clip: Clip, entry: Entry) -> Outcome {
         let Workspace { scratch, counters, ahead, entries, .. } = workspace;
         let line = Line { kernels: &self.kernels, scratch, ray, evaluations: 0 };
-        let walk = Walk::new(&self.cells, ray, stretch, entries);
+        let walk = Walk::new(&self.cells, ray, entry, entries);
         let mut search = Search { line, program: &self.program, accuracy: self.accuracy, clip, walk, ahead };
         let outcome = search.run();
         counters.box_evaluations += search.line.evaluations + search.walk.evaluations;
@@ -102,7 +106,15 @@ impl Tracer for Certified {
                 continue;
             };
             workspace.counters.rays_in_region += 1;
-            *outcome = self.search(workspace, *ray, clip, clip.outer);
+            *outcome = self.search(workspace, *ray, clip, (Cell::REGION, clip.outer));
+        }
+    }
+
+    fn trace_tile(&self, workspace: &mut Workspace, width: usize, rays: &[Ray], outcomes: &mut [Outcome]) {
+        assert_eq!(rays.len(), outcomes.len());
+        match Bundle::new(rays, width) {
+            Some(bundle) => Subdivision::new(self, workspace, &bundle, outcomes).run(),
+            None => self.trace(workspace, rays, outcomes),
         }
     }
 

@@ -31,10 +31,10 @@ pub(super) struct Walk<'a> {
 pub(crate) type Entry = (Cell, Span);
 
 impl<'a> Walk<'a> {
-    /// The walk of `ray`, as far as it is in `stretch`.
-    pub(super) fn new(cells: &'a Cells, ray: Ray, stretch: Span, pending: &'a mut Vec<Entry>) -> Self {
+    /// The walk of `ray` that begins with `entry` and goes no further.
+    pub(super) fn new(cells: &'a Cells, ray: Ray, entry: Entry, pending: &'a mut Vec<Entry>) -> Self {
         pending.clear();
-        pending.push((Cell::REGION, stretch));
+        pending.push(entry);
         let nearest = (0..3).filter(|axis| ray.direction[*axis] < 0.0).map(|axis| 1 << axis).sum();
         Self { cells, ray, inverse: ray.direction.recip(), nearest, pending, evaluations: 0, steps: 0 }
     }

@@ -1,0 +1,81 @@
+//! Rectangles of a tile's columns and rows.
+
+use std::ops::Range;
+
+/// Some of the columns and rows of a tile, at least one of each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Area {
+    pub(super) column: usize,
+    pub(super) row: usize,
+    pub(super) width: usize,
+    pub(super) height: usize,
+}
+
+impl Area {
+    pub(super) fn columns(self) -> Range<usize> {
+        self.column..self.column + self.width
+    }
+
+    pub(super) fn rows(self) -> Range<usize> {
+        self.row..self.row + self.height
+    }
+
+    pub(super) fn last_column(self) -> usize {
+        self.column + self.width - 1
+    }
+
+    pub(super) fn last_row(self) -> usize {
+        self.row + self.height - 1
+    }
+
+    /// Columns and rows of the corners, left to right and top to bottom.
+    pub(super) fn corners(self) -> [(usize, usize); 4] {
+        let (left, right) = (self.column, self.column + self.width.saturating_sub(1));
+        let (top, bottom) = (self.row, self.row + self.height.saturating_sub(1));
+        [(left, top), (right, top), (left, bottom), (right, bottom)]
+    }
+
+    /// How far a column and a row are from the middle. Exact.
+    pub(super) fn offset(self, column: usize, row: usize) -> (f64, f64) {
+        let from_middle =
+            |at: usize, start: usize, length: usize| (at as f64 - start as f64) - 0.5 * (length as f64 - 1.0);
+        (from_middle(column, self.column, self.width), from_middle(row, self.row, self.height))
+    }
+
+    /// How far the middle of `part` is from this one's. Exact.
+    pub(super) fn offset_of_middle(self, part: Self) -> (f64, f64) {
+        let (across, along) = self.offset(part.column, part.row);
+        (across + 0.5 * (part.width as f64 - 1.0), along + 0.5 * (part.height as f64 - 1.0))
+    }
+
+    /// The squares of `side` columns and rows that this area is made of, smaller at the right and at the bottom, row by row.
+    pub(super) fn blocks(self, side: usize) -> impl Iterator<Item = Self> {
+        self.rows().step_by(side).flat_map(move |row| {
+            self.columns().step_by(side).map(move |column| Self {
+                column,
+                row,
+                width: side.min(self.column + self.width - column),
+                height: side.min(self.row + self.height - row),
+            })
+        })
+    }
+
+    /// The two or four parts of an area that is cut in the middle of its longer side, or of both when they are about equally
+    /// long; a single ray stays as it is.
+    pub(super) fn quarters(self) -> impl Iterator<Item = Self> {
+        let halves = |start: usize, length: usize, is_cut: bool| {
+            let first = if is_cut { length.div_ceil(2) } else { length };
+            [(start, first), (start + first, length - first)].into_iter().filter(|(_, length)| *length > 0)
+        };
+        let columns_are_cut = 2 * self.width > self.height;
+        let rows_are_cut = 2 * self.height > self.width;
+        halves(self.row, self.height, rows_are_cut).flat_map(move |(row, height)| {
+            halves(self.column, self.width, columns_are_cut).map(move |(column, width)| Self {
+                column,
+                row,
+                width,
+                height,
+            })
+        })
+    }
+}

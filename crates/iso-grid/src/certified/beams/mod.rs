@@ -1,0 +1,21 @@
+//! Proofs shared by the rays of a tile.
+//!
+//! A *beam* is a rectangle of the tile's rays. Over a stretch of it F and its gradient are enclosed once for all its
+//! points, and the mean value form, whose excess shrinks with the square of the beam's size, says one of three things:
+//! - F is nowhere zero: no ray of the beam has a root in the stretch;
+//! - F is monotone along every ray: each ray has at most one root there, and one step of the interval Newton method
+//!   over the beam tells about where. Then each ray's own root is found in lanes from the beam's linear model, and one
+//!   step of the interval Newton method a ray, with the beam's slope, proves and encloses it;
+//! - neither: the stretch is cut, or the beam.
+//!
+//! What is left when beams are small goes to the search along single rays. A ray's stretches are looked at front to back
+//! whatever beams it goes through, so that the first root found is its first root.
+
+mod area;
+mod bundle;
+mod form;
+mod pixels;
+mod subdivision;
+
+pub(super) use bundle::Bundle;
+pub(super) use subdivision::Subdivision;

@@ -1,0 +1,278 @@
+//! The subdivision of a tile into beams and of beams into stretches.
+
+use glam::DVec3;
+use iso_expr::{Decorated, Interval};
+
+use super::area::Area;
+use super::bundle::{Beam, Bundle};
+use super::form::Form;
+use crate::certified::Certified;
+use crate::certified::cells::Cell;
+use crate::certified::classify::free_of_zero;
+use crate::certified::clip::Clip;
+use crate::{Outcome, Region, Span, Workspace};
+
+/// Into how many stretches a beam is cut at most, and so how many boxes a kernel is given at once.
+const SLICES: usize = 8;
+
+/// Beams of so many columns and rows are not cut further.
+const SMALLEST: usize = 2;
+
+/// Beams of so many columns and rows are not cut just since not all of their rays have a root.
+const SMALL: usize = 8;
+
+/// Stretches of a smallest beam that are shorter than this part of its width are left to its rays.
+const SHORTEST: f64 = 0.5;
+
+/// How uneven the slope of F may be over a beam whose rays are followed each for its own.
+const UNEVEN: f64 = 0.3;
+
+/// By how much of their length stretches overlap, so that a root near an end lies well inside one of them.
+const OVERLAP: f64 = 1.0 / 16.0;
+/// The least overlap, as part of the tile's farthest distance.
+const LEAST_OVERLAP: f64 = 1.0 / (1u64 << 30) as f64;
+
+/// How many boxes may be enclosed for each ray of a tile before the rest is left to single rays.
+const WORK_LIMIT: u64 = 64;
+
+/// A stretch of a beam that may hold roots.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    pub(super) beam: Beam,
+    pub(super) stretch: Span,
+    form: Option<Form>,
+}
+
+/// A stretch of a beam, and a box around its part in the region.
+struct Slab {
+    beam: Beam,
+    stretch: Span,
+    /// The stretch and a little more at both ends.
+    reach: Span,
+    lo: DVec3,
+    hi: DVec3,
+}
+
+impl Slab {
+    /// `None` when it lies outside the region.
+    fn new(beam: Beam, stretch: Span, least_overlap: f64, region: &Region) -> Option<Self> {
+        let overlap = (OVERLAP * (stretch.end - stretch.start)).max(least_overlap);
+        let reach = Span { start: (stretch.start - overlap).max(0.0), end: stretch.end + overlap };
+        let bounds = beam.bounds(reach);
+        let lo = DVec3::from_array(bounds.map(|axis| axis.start)).max(region.min());
+        let hi = DVec3::from_array(bounds.map(|axis| axis.end)).min(region.max());
+        lo.cmple(hi).all().then_some(Self { beam, stretch, reach, lo, hi })
+    }
+
+    /// A point of the box, in the middle of the beam where that is in the region.
+    fn center(&self) -> DVec3 {
+        let t = 0.5 * (self.reach.start + self.reach.end);
+        (self.beam.origins.middle + t * self.beam.directions.middle).clamp(self.lo, self.hi)
+    }
+}
+
+/// `count` parts of `span`, equally long.
+fn slices(span: Span, count: usize) -> impl DoubleEndedIterator<Item = Span> {
+    let cut = move |at: usize| {
+        let part = at as f64 / count as f64;
+        if at == count { span.end } else { span.start + part * (span.end - span.start) }
+    };
+    (0..count).map(move |slice| Span { start: cut(slice), end: cut(slice + 1) })
+}
+
+/// The subdivision of a tile.
+pub(in crate::certified) struct Subdivision<'a> {
+    pub(super) certified: &'a Certified,
+    pub(super) workspace: &'a mut Workspace,
+    pub(super) bundle: &'a Bundle<'a>,
+    /// Of each ray; those that miss the region have none.
+    pub(super) clips: Vec<Option<Clip>>,
+    pub(super) outcomes: &'a mut [Outcome],
+    /// Whether each ray's first root is still looked for.
+    pub(super) open: Vec<bool>,
+    /// What lies ahead. For each ray its stretches are in order, the nearest on top; everything before them is free of
+    /// roots, and so is all between.
+    ahead: Vec<Part>,
+    /// How many more boxes may be enclosed.
+    work_left: u64,
+    least_overlap: f64,
+}
+
+impl<'a> Subdivision<'a> {
+    pub(in crate::certified) fn new(
+        certified: &'a Certified,
+        workspace: &'a mut Workspace,
+        bundle: &'a Bundle<'a>,
+        outcomes: &'a mut [Outcome],
+    ) -> Self {
+        let clips: Vec<Option<Clip>> =
+            bundle.rays.iter().map(|ray| Clip::new(&certified.region, ray)).collect();
+        let open: Vec<bool> = clips.iter().map(Option::is_some).collect();
+        workspace.counters.rays += open.len() as u64;
+        workspace.counters.rays_in_region += open.iter().filter(|is_open| **is_open).count() as u64;
+        outcomes.fill(Outcome::Miss);
+        let work_left = WORK_LIMIT * open.len() as u64;
+        Self {
+            certified,
+            workspace,
+            bundle,
+            clips,
+            outcomes,
+            open,
+            ahead: Vec::new(),
+            work_left,
+            least_overlap: 0.0,
+        }
+    }
+
+    /// Says of every ray how its search ends.
+    pub(in crate::certified) fn run(mut self) {
+        let spans = self.clips.iter().flatten().map(|clip| clip.outer);
+        let Some(all) = spans.reduce(|a, b| Span { start: a.start.min(b.start), end: a.end.max(b.end) })
+        else {
+            return;
+        };
+        self.least_overlap = LEAST_OVERLAP * all.end;
+        self.ahead.push(Part { beam: self.bundle.beam(self.bundle.area), stretch: all, form: None });
+        while let Some(part) = self.ahead.pop() {
+            if !self.is_open(part.beam.area) {
+                continue;
+            }
+            match part.form {
+                _ if self.work_left == 0 => self.search_each(&part),
+                Some(form) if form.is_monotone() => self.follow(part, &form),
+                _ => self.divide(part),
+            }
+        }
+    }
+
+    /// Whether some ray of `area` is still followed.
+    fn is_open(&self, area: Area) -> bool {
+        area.rows().any(|row| self.open[row * self.bundle.area.width..][area.columns()].contains(&true))
+    }
+
+    /// Cuts a stretch when it is longer than the beam is wide, or else the beam.
+    fn divide(&mut self, part: Part) {
+        let Part { beam, stretch, .. } = part;
+        let (length, width) = beam.extent(stretch);
+        let is_smallest = beam.area.width.max(beam.area.height) <= SMALLEST;
+        if length > 2.0 * width && !(is_smallest && width == 0.0) {
+            let count = (length / width).ceil().min(SLICES as f64) as usize;
+            self.examine(&[beam], stretch, count);
+        } else if !is_smallest {
+            self.examine(&self.quarters(&beam), stretch, 2);
+        } else if length > SHORTEST * width {
+            self.examine(&[beam], stretch, 4);
+        } else {
+            self.search_each(&part);
+        }
+    }
+
+    /// Goes on with a stretch on which F is monotone along every ray.
+    fn follow(&mut self, part: Part, form: &Form) {
+        let Part { beam, stretch, .. } = part;
+        let roots = form.roots();
+        let narrowed = Span { start: stretch.start.max(roots.lo), end: stretch.end.min(roots.hi) };
+        if narrowed.start > narrowed.end {
+            return;
+        }
+        let length = |span: Span| span.end - span.start;
+        let is_small = beam.area.width.max(beam.area.height) <= SMALL;
+        let is_even = form.unevenness() < UNEVEN;
+        if is_even && (is_small || corners_hit(&beam, form, narrowed)) {
+            self.follow_each(&beam, narrowed, form);
+        } else if !is_small {
+            self.examine(&self.quarters(&beam), narrowed, 1);
+        } else if length(narrowed) < 0.5 * length(stretch) {
+            self.examine(&[beam], narrowed, 1);
+        } else {
+            self.divide(Part { stretch: narrowed, ..part });
+        }
+    }
+
+    fn quarters(&self, beam: &Beam) -> Vec<Beam> {
+        beam.area.quarters().map(|area| self.bundle.beam(area)).collect()
+    }
+
+    /// Encloses F over all beams, each cut into `count` stretches, and keeps the stretches that may hold roots.
+    fn examine(&mut self, beams: &[Beam], stretch: Span, count: usize) {
+        let slabs: Vec<Slab> = beams
+            .iter()
+            .flat_map(|beam| slices(stretch, count).rev().map(|stretch| (*beam, stretch)))
+            .filter_map(|(beam, stretch)| {
+                Slab::new(beam, stretch, self.least_overlap, &self.certified.region)
+            })
+            .collect();
+        let boxes = 2 * slabs.len() as u64;
+        self.work_left = self.work_left.saturating_sub(boxes);
+        self.workspace.counters.box_evaluations += boxes;
+        let (courses, values) = self.enclose(&slabs);
+        for ((slab, course), value) in slabs.into_iter().zip(courses).zip(values) {
+            if free_of_zero(course[0].interval) {
+                continue;
+            }
+            let form = Form::new(&slab.beam, slab.reach, slab.center(), value, course);
+            if form.is_none_or(|form| !form.excludes_zero()) {
+                self.ahead.push(Part { beam: slab.beam, stretch: slab.stretch, form });
+            }
+        }
+    }
+
+    /// Encloses F and its derivatives over each slab, and F at its center.
+    fn enclose(&mut self, slabs: &[Slab]) -> (Vec<[Decorated; 4]>, Vec<Interval>) {
+        let Workspace { boxes, scratch, .. } = &mut *self.workspace;
+        let kernels = &self.certified.kernels;
+        boxes.clear();
+        slabs.iter().for_each(|slab| boxes.push(slab.lo, slab.hi));
+        let found = boxes.evaluate(&*kernels.gradients, scratch, 4);
+        let courses = (0..slabs.len())
+            .map(|number| [0, 1, 2, 3].map(|output| found.decorated(output, number)))
+            .collect();
+        boxes.clear();
+        slabs.iter().map(Slab::center).for_each(|center| boxes.push(center, center));
+        let found = boxes.evaluate(&*kernels.values, scratch, 1);
+        (courses, (0..slabs.len()).map(|number| found.interval(0, number)).collect())
+    }
+
+    /// Leaves a part to the search along single rays.
+    fn search_each(&mut self, part: &Part) {
+        for row in part.beam.area.rows() {
+            for column in part.beam.area.columns() {
+                let place = row * self.bundle.area.width + column;
+                if self.open[place] {
+                    self.search_one(place, part.stretch);
+                }
+            }
+        }
+    }
+
+    /// Searches a stretch of one ray.
+    pub(super) fn search_one(&mut self, place: usize, stretch: Span) {
+        let Some(clip) = self.clips[place] else { return };
+        let Clip { outer, .. } = clip;
+        let stretch = Span { start: stretch.start.max(outer.start), end: stretch.end.min(outer.end) };
+        if stretch.start > stretch.end {
+            return;
+        }
+        let ray = self.bundle.rays[place];
+        let outcome = self.certified.search(self.workspace, ray, clip, (Cell::SMALLEST, stretch));
+        if outcome != Outcome::Miss {
+            self.end(place, outcome);
+        }
+    }
+
+    /// Notes how the search along a ray ends.
+    pub(super) fn end(&mut self, place: usize, outcome: Outcome) {
+        self.outcomes[place] = outcome;
+        self.open[place] = false;
+    }
+}
+
+/// Whether the rays at the corners of a beam are likely to have a root in `stretch`.
+fn corners_hit(beam: &Beam, form: &Form, stretch: Span) -> bool {
+    let [across, along] = beam.radii;
+    [(-across, -along), (across, -along), (-across, along), (across, along)].into_iter().all(|(a, b)| {
+        let t = form.estimate(a, b);
+        stretch.start <= t && t <= stretch.end
+    })
+}

@@ -1,0 +1,180 @@
+//! Tiles hold what their rays hold when each is traced alone.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use iso_expr::random::Random;
+use iso_expr::{Ast, Interpreter, Program};
+use iso_grid::{Certified, Hit, Outcome, Ray, Region, Span, Surface, Tracer, Workspace};
+
+/// Formulas, half sides of their regions, and what they are tried for.
+const SCENES: [(&str, f64, &str); 18] = [
+    ("(x^2+y^2-1)^2 + 4z^2 + 0.5x - 0.2", 1.5, "a classic"),
+    ("x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8", 2.6, "parts in front of each other"),
+    ("sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)", 5.0, "cut by the region's faces"),
+    ("x^2+y^2+z^2-1", 0.9, "cut by the region's faces, seen from all sides"),
+    ("exp(-4((x-0.4)^2+y^2+z^2)) + exp(-4((x+0.4)^2+y^2+z^2)) - 0.6", 1.5, "flat far away"),
+    ("abs(x^2+y^2+z^2-1) - 1e-6", 1.5, "a thin shell"),
+    ("x^2+y^2+z^2 - 1e-8", 2.0, "a sphere thinner than a pixel"),
+    ("tan(x) - y", 4.0, "poles"),
+    ("1/x + 1/y + 1/z - 3", 1.5, "poles that meet"),
+    ("floor(3x)/3 + y^2 + z^2 - 0.5", 1.5, "jumps"),
+    ("(x^2+y^2+z^2-1)^2", 1.5, "a double root"),
+    ("max(x^2+y^2+z^2-1, 0.6-sqrt((x-0.8)^2+y^2+z^2))", 1.5, "a crease"),
+    ("sqrt(x) + y^2 + z - 0.5", 1.5, "an edge of the domain"),
+    ("x^2+y^2+z^2+1", 1.5, "nothing"),
+    ("y", 1.5, "a plane across parallel rays"),
+    ("z", 1.5, "a plane along parallel rays"),
+    ("0x", 1.5, "zero everywhere"),
+    ("max(0, x^2+y^2+z^2-1)", 1.5, "a plateau"),
+];
+
+fn certified(value: &Program, half_side: f64) -> Certified {
+    let value = value.simplified();
+    let gradient = value.with_gradient().simplified();
+    let surface = Surface::new(Arc::new(Interpreter), value, gradient);
+    let corner = DVec3::splat(half_side);
+    Certified::new(&surface, Region::new(-corner, corner).unwrap()).unwrap()
+}
+
+fn read(formula: &str) -> Program {
+    Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0)
+}
+
+/// A picture's rays, and how many there are in a row.
+struct Tile {
+    name: &'static str,
+    rays: Vec<Ray>,
+    width: usize,
+}
+
+/// Views of a region of half side `half` in `width` columns and `height` rows: parallel rays along an axis and slanted,
+/// and rays that spread from an eye outside and from one inside.
+fn tiles(half: f64, width: usize, height: usize) -> [Tile; 4] {
+    let tile = |name, ray: &dyn Fn(f64, f64) -> Ray| {
+        let offset = |at: usize, length: usize| 2.0 * (at as f64 + 0.5) / length as f64 - 1.0;
+        let places = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
+        let rays = places.map(|(column, row)| ray(offset(column, width), -offset(row, height))).collect();
+        Tile { name, rays, width }
+    };
+    let (right, up) = (DVec3::new(0.8, 0.6, 0.0), DVec3::new(-0.24, 0.32, 0.916_515_138_991_168));
+    let forward = up.cross(right);
+    [
+        tile("along an axis", &|a, b| Ray {
+            origin: half * DVec3::new(1.1 * a, -3.0, 1.1 * b),
+            direction: DVec3::Y,
+        }),
+        tile("slanted", &|a, b| Ray {
+            origin: half * (1.7 * (a * right + b * up) - 4.0 * forward),
+            direction: 0.7 * forward,
+        }),
+        tile("from outside", &|a, b| Ray {
+            origin: -5.0 * half * forward,
+            direction: (forward + 0.35 * (a * right + b * up)).normalize(),
+        }),
+        tile("from inside", &|a, b| Ray {
+            origin: half * DVec3::new(0.05, -0.3, 0.21),
+            direction: forward + 0.9 * (a * right + b * up),
+        }),
+    ]
+}
+
+fn together(tracer: &dyn Tracer, tile: &Tile) -> Vec<Outcome> {
+    let mut outcomes = vec![Outcome::Miss; tile.rays.len()];
+    tracer.trace_tile(&mut Workspace::default(), tile.width, &tile.rays, &mut outcomes);
+    outcomes
+}
+
+fn alone(tracer: &dyn Tracer, rays: &[Ray]) -> Vec<Outcome> {
+    let mut outcomes = vec![Outcome::Miss; rays.len()];
+    tracer.trace(&mut Workspace::default(), rays, &mut outcomes);
+    outcomes
+}
+
+fn overlap(a: Span, b: Span) -> bool {
+    a.start <= b.end && b.start <= a.end
+}
+
+/// Whether two proofs about one ray can both be right: two first roots are one, and nothing is free of roots for one and
+/// holds a root for the other.
+fn agree(a: Outcome, b: Outcome) -> bool {
+    match (a, b) {
+        (Outcome::Hit(a), Outcome::Hit(b)) => overlap(a.bracket, b.bracket),
+        (Outcome::Hit(_), Outcome::Miss) | (Outcome::Miss, Outcome::Hit(_)) => false,
+        (Outcome::Hit(hit), Outcome::Touch(Hit { bracket: open, .. }) | Outcome::Undecided(open))
+        | (Outcome::Touch(Hit { bracket: open, .. }) | Outcome::Undecided(open), Outcome::Hit(hit)) => {
+            open.start <= hit.bracket.end
+        }
+        _ => true,
+    }
+}
+
+/// Whether two rays end alike.
+fn is_same(a: Outcome, b: Outcome) -> bool {
+    std::mem::discriminant(&a) == std::mem::discriminant(&b)
+}
+
+fn is_narrow(outcome: Outcome) -> bool {
+    match outcome {
+        Outcome::Hit(Hit { t, bracket }) => {
+            bracket.start <= t && t <= bracket.end && bracket.end - bracket.start <= 1e-12 * t.max(1.0)
+        }
+        _ => true,
+    }
+}
+
+#[test]
+fn every_ray_of_a_tile_ends_as_it_does_alone() {
+    let mut wrong = Vec::new();
+    for (formula, half, what) in SCENES {
+        let tracer = certified(&read(formula), half);
+        // Sides that are no powers of two, so that beams are cut unevenly.
+        for tile in tiles(half, 45, 37) {
+            let alone = alone(&tracer, &tile.rays);
+            for (number, (a, b)) in together(&tracer, &tile).into_iter().zip(alone).enumerate() {
+                if !(is_same(a, b) && agree(a, b) && is_narrow(a)) {
+                    wrong
+                        .push(format!("{formula} ({what}), {}, ray {number}: {a:?}, alone {b:?}", tile.name));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{} rays differ:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+#[test]
+fn no_tile_contradicts_its_rays_whatever_the_formula() {
+    let mut random = Random::new(7);
+    let mut decided = 0;
+    for number in 0..60 {
+        let program = random.program(4 + number % 12);
+        let tracer = certified(&program, 2.0);
+        for tile in tiles(2.0, 12, 9) {
+            let alone = alone(&tracer, &tile.rays);
+            for (a, b) in together(&tracer, &tile).into_iter().zip(alone) {
+                assert!(agree(a, b), "{program}\n{}: {a:?}, alone {b:?}", tile.name);
+                decided += usize::from(matches!((a, b), (Outcome::Hit(_), Outcome::Hit(_))));
+            }
+        }
+    }
+    assert!(decided > 500, "{decided} rays hit");
+}
+
+#[test]
+fn unrelated_rays_may_be_called_a_tile() {
+    let tracer = certified(&read("x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8"), 2.6);
+    let mut random = Random::new(3);
+    let mut vector = || DVec3::from_array([(); 3].map(|()| random.between(-3.0, 3.0)));
+    let mut rays: Vec<Ray> = (0..96).map(|_| Ray { origin: vector(), direction: vector() }).collect();
+    rays[17].direction = DVec3::ZERO;
+    for width in [1, 8, 96] {
+        let outcomes = together(&tracer, &Tile { name: "unrelated", rays: rays.clone(), width });
+        for (a, b) in outcomes.into_iter().zip(alone(&tracer, &rays)) {
+            assert!(is_same(a, b) && agree(a, b), "{a:?}, alone {b:?}");
+        }
+    }
+    rays[5].origin.x = f64::NAN;
+    rays[6].direction.y = 1e200;
+    let outcomes = together(&tracer, &Tile { name: "not finite", rays: rays.clone(), width: 8 });
+    assert_eq!(outcomes, alone(&tracer, &rays));
+}
