@@ -37,18 +37,24 @@ const EXCEPTIONS: &[Exception] = &[
 
 #[test]
 fn interpreter_proves_what_the_oracle_says() {
-    compare(Arc::new(Interpreter), |tracer, workspace, rays, outcomes| {
-        tracer.trace(workspace, rays, outcomes)
-    });
+    compare(Arc::new(Interpreter), trace_each);
+    compare(Arc::new(Interpreter), trace_pictures);
 }
 
 #[test]
-fn tiles_prove_what_the_oracle_says() {
-    compare(Arc::new(Interpreter), trace_pictures);
+fn native_code_proves_what_the_oracle_says() {
+    let engine = Arc::new(Jit::new().expect("this machine is one that code is made for"));
+    compare(Arc::clone(&engine) as Arc<dyn Engine>, trace_each);
+    compare(engine, trace_pictures);
 }
 
 /// A way to trace all rays of a scene.
 type Trace = fn(&Certified, &mut Workspace, &[Ray], &mut [Outcome]);
+
+/// Traces each ray alone.
+fn trace_each(tracer: &Certified, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]) {
+    tracer.trace(workspace, rays, outcomes);
+}
 
 /// The sides of the square pictures whose rays make up a scene, one after the other; not all scenes have the last one.
 const SIDES: [usize; 3] = [24, 16, 12];
@@ -67,11 +73,6 @@ fn trace_pictures(
         (rays, outcomes) = (other_rays, other_outcomes);
     }
     assert!(rays.is_empty(), "a scene has three pictures");
-}
-
-#[test]
-fn native_code_proves_what_the_oracle_says() {
-    compare(Arc::new(Jit::new().expect("this machine is one that code is made for")));
 }
 
 /// Traces every ray of every scene. All that is wrong is told at once.
