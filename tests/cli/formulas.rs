@@ -71,7 +71,7 @@ error: the function `sine` is unknown
             "√z·x² + 2xy",
             "\
 error: the name `xy` is unknown
- --> formula:1:9
+ --> formula:1:10
   |
 1 | √z·x² + 2xy
   |          ^^

@@ -117,7 +117,7 @@ fn depths_normals_and_points_are_written() {
             other => panic!("a sphere has no pixel that is {other}"),
         }
     }
-    assert!(hits > 100, "{hits} hits");
+    assert!(hits > 50, "{hits} hits");
 }
 
 #[test]
