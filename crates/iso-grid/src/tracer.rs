@@ -3,7 +3,7 @@
 use iso_expr::Scratch;
 
 use crate::batch::{BoxBatch, PointBatch};
-use crate::certified::{Ahead, Entry};
+use crate::certified::{Ahead, Entry, Expansion};
 use crate::{Counters, Ray, Span};
 
 /// A point of the surface on a ray.
@@ -63,4 +63,6 @@ pub struct Workspace {
     pub(crate) ahead: Vec<Ahead>,
     /// Which cells a certified search is to enter.
     pub(crate) entries: Vec<Entry>,
+    /// A polynomial along a ray.
+    pub(crate) expansion: Expansion,
 }

@@ -4,9 +4,11 @@ mod beams;
 mod cells;
 mod classify;
 mod clip;
+mod isolate;
 mod kernels;
 mod line;
 mod newton;
+mod polynomial;
 mod search;
 mod side;
 mod walk;
@@ -19,10 +21,13 @@ use crate::{Counters, Outcome, Ray, Region, Surface, Tracer, Workspace};
 use beams::{Bundle, Subdivision};
 use cells::{Cell, Cells};
 use clip::Clip;
+pub(crate) use isolate::Expansion;
+use isolate::Isolation;
 use kernels::Kernels;
 use line::Line;
+use polynomial::Polynomial;
 pub(crate) use search::Ahead;
-use search::Search;
+use search::{Search, Way};
 pub(crate) use walk::Entry;
 use walk::Walk;
 
@@ -38,17 +43,19 @@ use walk::Walk;
 ///   possible root next to a jump, a pole or an edge of the domain, on a face of the region, or since too much
 ///   work was done along this ray.
 ///
-/// The region is a grid of cells, proven empty where they are when a ray first comes by; what is found out is kept, and
+/// Where F is a polynomial, its Bernstein coefficients along the ray tell the search where to look. Elsewhere the region
+/// is a grid of cells, proven empty where they are when a ray first comes by; what is found out is kept, and
 /// spares later rays the search through empty space. It depends on the surface alone, so that the outcome of a ray does
 /// not depend on others.
 ///
-/// The ray is searched front to back, cell by cell. A stretch of it is discarded when the enclosure of F excludes zero, over the
+/// The ray is searched front to back. A stretch of it is discarded when the enclosure of F excludes zero, over the
 /// stretch as a whole, by the slope from its ends, or piece by piece around poles and jumps. It is a crossing when F
 /// is monotone and changes sign, and then the interval Newton method encloses the root. Else it is cut into parts.
 pub struct Certified {
     kernels: Kernels,
     value_batch: Arc<dyn BatchKernel>,
     program: Program,
+    polynomial: Option<Polynomial>,
     region: Region,
     cells: Cells,
     accuracy: f64,
@@ -70,6 +77,7 @@ impl Certified {
             },
             value_batch: Arc::clone(surface.values()?),
             program: surface.program().clone(),
+            polynomial: Polynomial::of(surface.program()),
             cells: Cells::new(&region),
             region,
             accuracy: Self::ACCURACY,
@@ -85,13 +93,25 @@ impl Certified {
 impl Certified {
     /// How the search along a ray ends, if it begins with `entry`, a stretch in a cell, and goes no further.
     fn search(&self, workspace: &mut Workspace, ray: Ray, clip: Clip, entry: Entry) -> Outcome {
-        let Workspace { scratch, counters, ahead, entries, .. } = workspace;
+        let Workspace { scratch, counters, ahead, entries, expansion, .. } = workspace;
         let line = Line { kernels: &self.kernels, scratch, ray, evaluations: 0 };
-        let walk = Walk::new(&self.cells, ray, entry, entries);
-        let mut search = Search { line, program: &self.program, accuracy: self.accuracy, clip, walk, ahead };
+        let way = match &self.polynomial {
+            Some(polynomial) => Way::Pieces(Isolation::new(polynomial, &line, entry.1, expansion)),
+            None => Way::Cells(Walk::new(&self.cells, ray, entry, entries)),
+        };
+        let mut search = Search { line, program: &self.program, accuracy: self.accuracy, clip, way, ahead };
         let outcome = search.run();
-        counters.box_evaluations += search.line.evaluations + search.walk.evaluations;
-        counters.steps += search.walk.steps;
+        counters.box_evaluations += search.line.evaluations;
+        match search.way {
+            Way::Cells(walk) => {
+                counters.box_evaluations += walk.evaluations;
+                counters.steps += walk.steps;
+            }
+            Way::Pieces(isolation) => {
+                counters.box_evaluations += 1;
+                counters.steps += isolation.judged;
+            }
+        }
         outcome
     }
 }

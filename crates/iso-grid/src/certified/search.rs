@@ -5,6 +5,7 @@ use iso_expr::{Decoration, Program};
 
 use super::classify::{Finding, classify, free_of_zero};
 use super::clip::Clip;
+use super::isolate::Isolation;
 use super::line::Line;
 use super::side::side;
 use super::walk::Walk;
@@ -33,11 +34,18 @@ pub(super) struct Search<'a> {
     pub(super) program: &'a Program,
     pub(super) accuracy: f64,
     pub(super) clip: Clip,
-    /// The way through the cells that are not empty.
-    pub(super) walk: Walk<'a>,
-    /// What lies ahead in the cell that is looked at, the nearest on top. Everything before it is free of roots, and so is
-    /// all between.
+    pub(super) way: Way<'a>,
+    /// What lies ahead in the stretch of the way that is looked at, the nearest on top. Everything before it is free of
+    /// roots, and so is all between.
     pub(super) ahead: &'a mut Vec<Ahead>,
+}
+
+/// Where stretches to look at come from, front to back. All between them is free of roots.
+pub(super) enum Way<'a> {
+    /// The cells that are not empty.
+    Cells(Walk<'a>),
+    /// The pieces in which a polynomial may change sign.
+    Pieces(Isolation<'a>),
 }
 
 /// A stretch that may hold roots.
@@ -48,7 +56,7 @@ pub(crate) struct Ahead {
 }
 
 impl Search<'_> {
-    /// How the search along the walk ends. Everything before the end is proven.
+    /// How the search ends. Everything before the end is proven.
     pub(super) fn run(&mut self) -> Outcome {
         self.ahead.clear();
         while let Some(Ahead { stretch, finding }) = self.next() {
@@ -74,7 +82,10 @@ impl Search<'_> {
     /// The nearest stretch that may hold roots.
     fn next(&mut self) -> Option<Ahead> {
         while self.ahead.is_empty() {
-            let Span { start, end } = self.walk.next(self.line.kernels, self.program, self.line.scratch)?;
+            let Span { start, end } = match &mut self.way {
+                Way::Cells(walk) => walk.next(self.line.kernels, self.program, self.line.scratch)?,
+                Way::Pieces(isolation) => isolation.next()?,
+            };
             self.examine(&[start, end]);
         }
         self.ahead.pop()
