@@ -7,6 +7,7 @@ use iso_expr::engine::Points;
 use iso_expr::{BatchKernel, Node, Program, Scratch};
 
 use crate::code::{Blueprint, Compiled};
+use crate::host::{self, Limits};
 use crate::lanes::{Lanes, Writer};
 use crate::symbols::Calls;
 use crate::values;
@@ -93,6 +94,7 @@ impl<'a> BatchBlueprint<'a> {
 
 impl Blueprint for BatchBlueprint<'_> {
     const NAME: &'static str = "batch";
+    const LIMITS: Limits = host::POINTS;
     type Function = Evaluate;
 
     fn sign(&self, signature: &mut Signature) {
@@ -142,7 +144,7 @@ impl BatchBlueprint<'_> {
         stride: Value,
         offset: Value,
     ) {
-        let mut writer = Writer { builder, lanes: Lanes::Two };
+        let mut writer = Writer::new(builder, Lanes::Two);
         let addresses = coordinates.map(|start| writer.builder.ins().iadd(start, offset));
         let displacement = |pair: usize| (size_of::<f64>() * PAIR * pair) as i32;
         let arguments: Vec<_> = (0..self.pairs)

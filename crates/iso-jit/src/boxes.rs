@@ -10,6 +10,7 @@ use iso_expr::{BoxKernel, Decorated, Decoration, Node, Program, Scratch};
 
 use crate::code::{Blueprint, Compiled};
 use crate::enclosures::{self, Enclosure};
+use crate::host::{self, Limits};
 use crate::lanes::{Lanes, Writer};
 use crate::symbols::Calls;
 use crate::trampoline::Room;
@@ -76,6 +77,7 @@ pub(crate) struct BoxBlueprint<'a>(pub(crate) &'a Program);
 
 impl Blueprint for BoxBlueprint<'_> {
     const NAME: &'static str = "boxes";
+    const LIMITS: Limits = host::BOXES;
     type Function = Enclose;
 
     fn sign(&self, signature: &mut Signature) {
@@ -96,7 +98,7 @@ impl Blueprint for BoxBlueprint<'_> {
 
         builder.switch_to_block(round);
         let mut round_of_boxes =
-            Round { writer: Writer { builder, lanes: Lanes::Two }, places, count, index, second };
+            Round { writer: Writer::new(builder, Lanes::Two), places, count, index, second };
         round_of_boxes.write(calls, self.0);
         let next = builder.ins().iadd_imm_s(index, PAIR as i64);
         let beyond = builder.ins().icmp(IntCC::UnsignedGreaterThan, next, last);

@@ -10,6 +10,7 @@ use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Linkage, Module, default_libcall_names};
 use iso_expr::CompileError;
 
+use crate::host::Limits;
 use crate::refused;
 use crate::symbols::{self, Calls};
 
@@ -20,6 +21,9 @@ const LARGEST_FRAME: u32 = 512 << 10;
 pub(crate) trait Blueprint {
     /// The name in listings.
     const NAME: &'static str;
+
+    /// How large a program it may be made of.
+    const LIMITS: Limits;
 
     /// The compiled function's type, a pointer to a function of the C convention.
     type Function;

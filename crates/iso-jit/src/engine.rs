@@ -8,8 +8,9 @@ use iso_expr::{BatchKernel, BoxKernel, CompileError, Engine, PointKernel, Progra
 
 use crate::batch::{BatchBlueprint, NativeBatch};
 use crate::boxes::{BoxBlueprint, NativeBoxes};
-use crate::code::Compiled;
+use crate::code::{Blueprint, Compiled};
 use crate::host::Host;
+use crate::listing::{Kind, Listing};
 use crate::point::{FunctionBlueprint, NativeFunction, NativePoint, PointBlueprint};
 
 /// The engine's name on the command line and in reports.
@@ -40,8 +41,34 @@ impl Jit {
     pub fn function(&self, program: &Program) -> Result<NativeFunction, CompileError> {
         assert_eq!(program.outputs().len(), 1, "a function has one output");
         let program = program.with_powers_expanded();
-        let isa = self.host.admit(&program)?;
-        Ok(NativeFunction(Compiled::new(isa, &mut Context::new(), &FunctionBlueprint(&program))?))
+        Ok(NativeFunction(self.compile(&program, &FunctionBlueprint(&program))?))
+    }
+
+    /// The kernel of `program` that runs over `kind`, as text.
+    ///
+    /// # Errors
+    /// When the program is too large.
+    pub fn listing(&self, program: &Program, kind: Kind) -> Result<Listing, CompileError> {
+        let program = if kind == Kind::Boxes { program.pruned() } else { program.with_powers_expanded() };
+        match kind {
+            Kind::Point => self.list(&program, &PointBlueprint(&program)),
+            Kind::Batch => self.list(&program, &BatchBlueprint::new(&program)),
+            Kind::Boxes => self.list(&program, &BoxBlueprint(&program)),
+        }
+    }
+
+    /// Lists `blueprint`, which is one of `program`.
+    fn list<B: Blueprint>(&self, program: &Program, blueprint: &B) -> Result<Listing, CompileError> {
+        Listing::new(self.host.admit(program, &B::LIMITS)?, blueprint)
+    }
+
+    /// Compiles `blueprint`, which is one of `program`.
+    fn compile<B: Blueprint>(
+        &self,
+        program: &Program,
+        blueprint: &B,
+    ) -> Result<Compiled<B::Function>, CompileError> {
+        Compiled::new(self.host.admit(program, &B::LIMITS)?, &mut Context::new(), blueprint)
     }
 }
 
@@ -52,23 +79,21 @@ impl Engine for Jit {
 
     fn point(&self, program: &Program) -> Result<Arc<dyn PointKernel>, CompileError> {
         let program = program.with_powers_expanded();
-        let isa = self.host.admit(&program)?;
-        let compiled = Compiled::new(isa, &mut Context::new(), &PointBlueprint(&program))?;
+        let compiled = self.compile(&program, &PointBlueprint(&program))?;
         Ok(Arc::new(NativePoint::new(&program, compiled)))
     }
 
     fn batch(&self, program: &Program) -> Result<Arc<dyn BatchKernel>, CompileError> {
         let program = program.with_powers_expanded();
-        let isa = self.host.admit(&program)?;
         let blueprint = BatchBlueprint::new(&program);
-        let compiled = Compiled::new(isa, &mut Context::new(), &blueprint)?;
+        let compiled = self.compile(&program, &blueprint)?;
         Ok(Arc::new(NativeBatch::new(&blueprint, compiled)))
     }
 
     fn boxes(&self, program: &Program) -> Result<Arc<dyn BoxKernel>, CompileError> {
+        // Integer powers stay: an interval's square is narrower than its product with itself.
         let program = program.pruned();
-        let isa = self.host.admit(&program)?;
-        let compiled = Compiled::new(isa, &mut Context::new(), &BoxBlueprint(&program))?;
+        let compiled = self.compile(&program, &BoxBlueprint(&program))?;
         Ok(Arc::new(NativeBoxes::new(&program, compiled)))
     }
 }

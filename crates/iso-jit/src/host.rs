@@ -10,20 +10,38 @@ use iso_expr::{CompileError, Program};
 use crate::engine::NAME;
 use crate::refused;
 
-/// The most operations that a kernel over points may have, integer powers written out. Time to compile a batch kernel, in
-/// milliseconds, on one core of a 2.6 GHz server, for two shapes of program:
-///
-/// | operations | sum of products | random arithmetic |
-/// |-----------:|----------------:|------------------:|
-/// |         20 |             0.3 |               0.3 |
-/// |      1,000 |               4 |                 3 |
-/// |     10,000 |              50 |                20 |
-/// |    100,000 |             700 |               200 |
-const LARGEST: usize = 100_000;
+/// How large a program may be. Times to compile are in milliseconds, on one core of a 2.6 GHz server.
+pub(crate) struct Limits {
+    /// The most operations.
+    largest: usize,
+    /// The most operations for which registers are allocated with care, which takes longer than in proportion.
+    largest_with_care: usize,
+}
 
-/// The most operations for which registers are allocated with care. Care takes longer than in proportion: 100,000 random
-/// operations would take 7 seconds to compile, and a program with 4,000 values alive at once 1.6 instead of 0.07.
-const LARGEST_ALLOCATED_WITH_CARE: usize = 2_000;
+/// For kernels over points, integer powers written out.
+///
+/// | operations | sum of products | random arithmetic | with care    |
+/// |-----------:|----------------:|------------------:|--------------|
+/// |         20 |             0.3 |               0.3 | yes          |
+/// |      1,000 |               4 |                 3 | yes          |
+/// |     10,000 |              50 |                20 | no           |
+/// |    100,000 |             700 |               200 | no           |
+///
+/// With care, 10,000 random operations would take 100 and 100,000 of them 7,000.
+pub(crate) const POINTS: Limits = Limits { largest: 100_000, largest_with_care: 2_000 };
+
+/// For kernels over boxes, where an operation takes twenty to fifty instructions.
+///
+/// | operations | sum of products | random arithmetic | with care    |
+/// |-----------:|----------------:|------------------:|--------------|
+/// |         20 |               1 |                 1 | yes          |
+/// |        100 |              15 |                20 | yes          |
+/// |      1,000 |              36 |               100 | no           |
+/// |      3,000 |             160 |               440 | no           |
+/// |     10,000 |              620 |  too large a frame | no           |
+///
+/// With care, 1,000 operations would take 230 to 1,500. The kernels are then 1.3 to 1.8 times as fast.
+pub(crate) const BOXES: Limits = Limits { largest: 10_000, largest_with_care: 100 };
 
 /// This machine's instruction set, with every extension that the processor reports.
 #[derive(Clone)]
@@ -47,12 +65,16 @@ impl Host {
     ///
     /// # Errors
     /// When the program is too large.
-    pub(crate) fn admit(&self, program: &Program) -> Result<&Arc<dyn TargetIsa>, CompileError> {
-        let given = program.operations();
-        if given > LARGEST {
-            return Err(CompileError::TooLarge { engine: NAME, given, allowed: LARGEST });
+    pub(crate) fn admit(
+        &self,
+        program: &Program,
+        limits: &Limits,
+    ) -> Result<&Arc<dyn TargetIsa>, CompileError> {
+        let (given, allowed) = (program.operations(), limits.largest);
+        if given > allowed {
+            return Err(CompileError::TooLarge { engine: NAME, given, allowed });
         }
-        Ok(if given > LARGEST_ALLOCATED_WITH_CARE { &self.quick } else { &self.careful })
+        Ok(if given > limits.largest_with_care { &self.quick } else { &self.careful })
     }
 
     /// The machine's name.

@@ -1,5 +1,7 @@
 //! Doubles side by side: one way of writing code for one double and for two in a 128-bit register.
 
+use std::collections::HashMap;
+
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{ConstantData, FuncRef, InstBuilder, MemFlagsData, Type, Value, types};
 use cranelift_frontend::FunctionBuilder;
@@ -26,24 +28,34 @@ impl Lanes {
 /// Writes instructions on doubles side by side. Every instruction does the same in every lane.
 pub(crate) struct Writer<'a, 'b> {
     pub(crate) builder: &'a mut FunctionBuilder<'b>,
-    pub(crate) lanes: Lanes,
+    lanes: Lanes,
+    /// The constants so far, by their bits.
+    constants: HashMap<u64, Value>,
 }
 
 /// The truth of a comparison in each lane: a byte for one lane, a mask of ones or zeros for two.
 #[derive(Clone, Copy)]
 pub(crate) struct Mask(pub(crate) Value);
 
+impl<'a, 'b> Writer<'a, 'b> {
+    /// Writes to the block where `builder` stands, and to no other.
+    pub(crate) fn new(builder: &'a mut FunctionBuilder<'b>, lanes: Lanes) -> Self {
+        Self { builder, lanes, constants: HashMap::new() }
+    }
+}
+
 impl Writer<'_, '_> {
     /// The same double in every lane.
     pub(crate) fn constant(&mut self, value: f64) -> Value {
-        match self.lanes {
-            Lanes::One => self.builder.ins().f64const(value),
+        let (builder, lanes) = (&mut *self.builder, self.lanes);
+        *self.constants.entry(value.to_bits()).or_insert_with(|| match lanes {
+            Lanes::One => builder.ins().f64const(value),
             Lanes::Two => {
                 let bytes = [value.to_bits().to_le_bytes(); 2].concat();
-                let constant = self.builder.func.dfg.constants.insert(ConstantData::from(bytes));
-                self.builder.ins().vconst(types::F64X2, constant)
+                let constant = builder.func.dfg.constants.insert(ConstantData::from(bytes));
+                builder.ins().vconst(types::F64X2, constant)
             }
-        }
+        })
     }
 
     /// The doubles that stand `offset` bytes after `address`.

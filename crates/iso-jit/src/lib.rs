@@ -17,6 +17,7 @@ mod enclosures;
 mod engine;
 mod host;
 mod lanes;
+mod listing;
 mod point;
 mod symbols;
 mod trampoline;
@@ -27,6 +28,7 @@ use std::fmt::Display;
 use iso_expr::CompileError;
 
 pub use engine::Jit;
+pub use listing::{Kind, Listing};
 pub use point::NativeFunction;
 
 /// The code generator's refusal, as every engine reports it.

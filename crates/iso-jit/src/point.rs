@@ -5,6 +5,7 @@ use cranelift_frontend::FunctionBuilder;
 use iso_expr::{PointKernel, Program, Scratch};
 
 use crate::code::{Blueprint, Compiled};
+use crate::host::{self, Limits};
 use crate::lanes::{Lanes, Writer};
 use crate::symbols::Calls;
 use crate::values;
@@ -24,6 +25,7 @@ pub(crate) struct FunctionBlueprint<'a>(pub(crate) &'a Program);
 
 impl Blueprint for FunctionBlueprint<'_> {
     const NAME: &'static str = "function";
+    const LIMITS: Limits = host::POINTS;
     type Function = extern "C" fn(f64, f64, f64) -> f64;
 
     fn sign(&self, signature: &mut Signature) {
@@ -71,6 +73,7 @@ pub(crate) struct PointBlueprint<'a>(pub(crate) &'a Program);
 
 impl Blueprint for PointBlueprint<'_> {
     const NAME: &'static str = "point";
+    const LIMITS: Limits = host::POINTS;
     type Function = WritesOutputs;
 
     fn sign(&self, signature: &mut Signature) {
@@ -100,7 +103,7 @@ fn outputs(
     program: &Program,
     arguments: [Value; 3],
 ) -> Vec<Value> {
-    let mut writer = Writer { builder, lanes: Lanes::One };
+    let mut writer = Writer::new(builder, Lanes::One);
     values::evaluate(&mut writer, calls, program, &[arguments]).remove(0)
 }
 

@@ -2,7 +2,7 @@
 
 use std::mem::offset_of;
 
-use cranelift_codegen::ir::{InstBuilder, StackSlot, StackSlotData, StackSlotKind, types};
+use cranelift_codegen::ir::{InstBuilder, StackSlot, StackSlotData, StackSlotKind, Type, types};
 use iso_expr::{Decorated, Decoration, Extension, Interval, Operation};
 
 use crate::enclosures::{Enclosure, known};
@@ -19,13 +19,19 @@ pub(crate) struct Pair {
 
 impl Pair {
     fn get(&self, lane: usize) -> Decorated {
-        let decoration = match self.known[lane].count_ones() {
-            0 => Decoration::Trivial,
-            1 => Decoration::Defined,
-            2 => Decoration::Continuous,
+        let decoration = match self.known[lane] {
+            0b000 => Decoration::Trivial,
+            0b001 => Decoration::Defined,
+            0b011 => Decoration::Continuous,
             _ => Decoration::Common,
         };
         Decorated { interval: Interval { lo: self.lo[lane], hi: -self.minus_hi[lane] }, decoration }
+    }
+
+    /// Whether both enclosures are equal. They are, all through a kernel, where it is given a single box.
+    fn is_twice_the_same(&self) -> bool {
+        let same = |ends: [f64; 2]| ends[0].to_bits() == ends[1].to_bits();
+        same(self.lo) && same(self.minus_hi) && self.known[0] == self.known[1]
     }
 
     fn set(&mut self, lane: usize, enclosure: Decorated) {
@@ -44,15 +50,17 @@ pub(crate) unsafe extern "C" fn extend(operation: Operation, operands: *const Pa
     let operands = unsafe { std::slice::from_raw_parts(operands, operation.arity()) };
     // SAFETY: the room is there, and apart from the operands.
     let result = unsafe { &mut *result };
-    for lane in 0..2 {
+    let extended = |lane: usize| {
         let operand = |place: usize| operands[place].get(lane);
-        let enclosure = match operation.extension() {
+        match operation.extension() {
             Extension::Unary(extend) => extend(operand(0)),
             Extension::Binary(extend) => extend(operand(0), operand(1)),
             Extension::Ternary(extend) => extend(operand(0), operand(1), operand(2)),
-        };
-        result.set(lane, enclosure);
-    }
+        }
+    };
+    let first = extended(0);
+    result.set(0, first);
+    result.set(1, if operands.iter().all(Pair::is_twice_the_same) { first } else { extended(1) });
 }
 
 /// Room on a kernel's stack for the operands and the result of a call: the same for every call.
@@ -88,19 +96,25 @@ impl Room {
                 writer.builder.ins().stack_store(types::I64, value, self.0, offset as i32);
             }
         }
-        let result = (MOST_OPERANDS * size_of::<Pair>()) as i32;
+        let result = MOST_OPERANDS * size_of::<Pair>();
         let index = writer.builder.ins().iconst(types::I8, operation.index() as i64);
         let operands = writer.builder.ins().stack_addr(types::I64, self.0, 0);
-        let address = writer.builder.ins().stack_addr(types::I64, self.0, result);
+        let address = writer.builder.ins().stack_addr(types::I64, self.0, result as i32);
         let extend = calls.extend(writer.builder.func);
         writer.builder.ins().call(extend, &[index, operands, address]);
-        let mut load = |ty, offset: usize| {
-            writer.builder.ins().stack_load(types::I64, ty, self.0, result + offset as i32)
+        // Lane by lane, as it was written: the processor forwards no wider load from narrower stores.
+        let mut load = |element: Type, offset: usize| {
+            let [low, high] = [0, size_of::<f64>()].map(|lane| {
+                let offset = (result + offset + lane) as i32;
+                writer.builder.ins().stack_load(types::I64, element, self.0, offset)
+            });
+            let pair = writer.builder.ins().scalar_to_vector(element.by(2).expect("a vector type"), low);
+            writer.builder.ins().insertlane(pair, high, 1)
         };
         Enclosure {
-            lo: load(types::F64X2, offset_of!(Pair, lo)),
-            minus_hi: load(types::F64X2, offset_of!(Pair, minus_hi)),
-            known: load(types::I64X2, offset_of!(Pair, known)),
+            lo: load(types::F64, offset_of!(Pair, lo)),
+            minus_hi: load(types::F64, offset_of!(Pair, minus_hi)),
+            known: load(types::I64, offset_of!(Pair, known)),
         }
     }
 }
