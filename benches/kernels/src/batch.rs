@@ -1,0 +1,41 @@
+//! What the kernels are given: the same points and boxes for all of them.
+
+use iso_expr::engine::{Boxes, Points};
+
+/// How many points or boxes one call is given: as many as the tracers do.
+pub const COUNT: usize = 256;
+
+/// Points spread evenly over a cube, and a small box around each.
+pub struct Batch {
+    points: [Vec<f64>; 3],
+    lo: [Vec<f64>; 3],
+    hi: [Vec<f64>; 3],
+}
+
+impl Batch {
+    /// [`COUNT`] points between −`radius` and `radius` along each axis, in boxes 1/64 as wide.
+    ///
+    /// The points are the sequence that adds 1/g, 1/g² and 1/g³ modulo 1, where g⁴ = g + 1
+    /// (M. Roberts, 'The unreasonable effectiveness of quasirandom sequences', 2018).
+    pub fn within(radius: f64) -> Self {
+        const G: f64 = 1.2207440846057596;
+        let points = [1, 2, 3].map(|axis| {
+            let coordinate = |place| 2.0 * (0.5 + f64::from(place) * G.powi(-axis)).fract() - 1.0;
+            (0..COUNT as u32).map(|place| radius * coordinate(place)).collect::<Vec<f64>>()
+        });
+        let moved = |by: f64| points.clone().map(|axis| axis.iter().map(|coordinate| coordinate + by).collect());
+        Self { lo: moved(-radius / 64.0), hi: moved(radius / 64.0), points }
+    }
+
+    /// The points.
+    pub fn points(&self) -> Points<'_> {
+        let [x, y, z] = &self.points;
+        Points { x, y, z }
+    }
+
+    /// The boxes.
+    pub fn boxes(&self) -> Boxes<'_> {
+        let slices = |ends: &'_ [Vec<f64>; 3]| -> [&'_ [f64]; 3] { [&ends[0], &ends[1], &ends[2]] };
+        Boxes { lo: slices(&self.lo), hi: slices(&self.hi) }
+    }
+}

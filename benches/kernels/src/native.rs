@@ -1,0 +1,166 @@
+//! The measured formulas as kernels compiled by rustc, once for 128-bit lanes and once for AVX-512.
+//!
+//! All loops run over slices, whose elements LLVM puts side by side in as wide registers as the named features have.
+
+use std::arch::is_x86_feature_detected;
+
+use iso_expr::engine::{Boxes, Points};
+use iso_expr::Interval;
+
+use crate::{formulas, operations};
+
+include!("measured.rs");
+
+/// A function of three intervals with several results.
+type Enclose<const OUTPUTS: usize> = fn(Interval, Interval, Interval) -> [Interval; OUTPUTS];
+
+include!(concat!(env!("OUT_DIR"), "/straight_line.rs"));
+
+/// A kernel over batches: as the engines' kernels are, but a function alone.
+pub type Sweep = fn(Points<'_>, &mut [f64]);
+
+/// A kernel over boxes, writing lower and upper ends.
+pub type BoxSweep = fn(Boxes<'_>, lo: &mut [f64], hi: &mut [f64]);
+
+/// What rustc makes of one formula.
+pub struct Native {
+    /// The formula's name.
+    pub name: &'static str,
+    /// F at a point.
+    pub value: fn(f64, f64, f64) -> f64,
+    /// F over a batch, in 128-bit lanes.
+    pub values: Sweep,
+    /// F and its gradient over a batch, in 128-bit lanes.
+    pub gradients: Sweep,
+    /// F over a batch, in 512-bit lanes; only to be called where [`has_avx512`].
+    pub wide_values: Sweep,
+    /// F and its gradient over a batch, in 512-bit lanes; only to be called where [`has_avx512`].
+    pub wide_gradients: Sweep,
+    /// F over boxes, without decorations. `None` when Rust's intervals lack an operation.
+    pub boxes: Option<BoxSweep>,
+    /// F and its gradient over boxes, without decorations. `None` when Rust's intervals lack an operation.
+    pub gradient_boxes: Option<BoxSweep>,
+}
+
+/// Whether this processor runs the kernels in 512-bit lanes.
+pub fn has_avx512() -> bool {
+    is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq")
+}
+
+/// Loops over slices for processors with these features.
+macro_rules! sweeps {
+    ($features:literal, $value:path, $gradient:path) => {
+        #[target_feature(enable = $features)]
+        fn sweep_values(x: &[f64], y: &[f64], z: &[f64], values: &mut [f64]) {
+            let count = x.len();
+            let (y, z, values) = (&y[..count], &z[..count], &mut values[..count]);
+            for point in 0..count {
+                values[point] = $value(x[point], y[point], z[point]);
+            }
+        }
+
+        #[target_feature(enable = $features)]
+        fn sweep_gradients(
+            x: &[f64],
+            y: &[f64],
+            z: &[f64],
+            values: &mut [f64],
+            along_x: &mut [f64],
+            along_y: &mut [f64],
+            along_z: &mut [f64],
+        ) {
+            let count = x.len();
+            let (y, z, values) = (&y[..count], &z[..count], &mut values[..count]);
+            let (along_x, along_y, along_z) =
+                (&mut along_x[..count], &mut along_y[..count], &mut along_z[..count]);
+            for point in 0..count {
+                [values[point], along_x[point], along_y[point], along_z[point]] =
+                    $gradient(x[point], y[point], z[point]);
+            }
+        }
+
+        pub(super) fn values(points: Points<'_>, values: &mut [f64]) {
+            // SAFETY: `Native` says which processors the function may be called on: those with the features.
+            unsafe { sweep_values(points.x, points.y, points.z, values) }
+        }
+
+        pub(super) fn gradients(points: Points<'_>, values: &mut [f64]) {
+            let count = points.x.len();
+            let (values, rest) = values.split_at_mut(count);
+            let (along_x, rest) = rest.split_at_mut(count);
+            let (along_y, along_z) = rest.split_at_mut(count);
+            // SAFETY: `Native` says which processors the function may be called on: those with the features.
+            unsafe { sweep_gradients(points.x, points.y, points.z, values, along_x, along_y, along_z) }
+        }
+    };
+}
+
+macro_rules! natives {
+    ($($name:ident, $gradient:ident, $boxes:ident, $gradient_boxes:ident;)*) => {
+        $(mod $name {
+            use super::*;
+
+            #[inline(never)]
+            pub(super) fn value(x: f64, y: f64, z: f64) -> f64 {
+                formulas::$name(x, y, z)
+            }
+
+            pub(super) mod narrow {
+                use super::*;
+                sweeps!("sse4.2", formulas::$name, $gradient);
+            }
+
+            pub(super) mod wide {
+                use super::*;
+                sweeps!("avx512f,avx512dq", formulas::$name, $gradient);
+            }
+
+            pub(super) fn boxes(boxes: Boxes<'_>, lo: &mut [f64], hi: &mut [f64]) {
+                sweep_boxes($boxes.expect("only offered when there"), boxes, lo, hi);
+            }
+
+            pub(super) fn gradient_boxes(boxes: Boxes<'_>, lo: &mut [f64], hi: &mut [f64]) {
+                sweep_boxes($gradient_boxes.expect("only offered when there"), boxes, lo, hi);
+            }
+        })*
+
+        /// Every measured formula.
+        pub const NATIVES: [Native; MEASURED.len()] = [$(Native {
+            name: stringify!($name),
+            value: $name::value,
+            values: $name::narrow::values,
+            gradients: $name::narrow::gradients,
+            wide_values: $name::wide::values,
+            wide_gradients: $name::wide::gradients,
+            boxes: if $boxes.is_some() { Some($name::boxes) } else { None },
+            gradient_boxes: if $gradient_boxes.is_some() { Some($name::gradient_boxes) } else { None },
+        }),*];
+    };
+}
+
+natives! {
+    paper, paper_gradient, PAPER_BOX, PAPER_BOX_GRADIENT;
+    tanglecube, tanglecube_gradient, TANGLECUBE_BOX, TANGLECUBE_BOX_GRADIENT;
+    heart, heart_gradient, HEART_BOX, HEART_BOX_GRADIENT;
+    barth, barth_gradient, BARTH_BOX, BARTH_BOX_GRADIENT;
+    gyroid, gyroid_gradient, GYROID_BOX, GYROID_BOX_GRADIENT;
+    metaballs, metaballs_gradient, METABALLS_BOX, METABALLS_BOX_GRADIENT;
+}
+
+/// Applies a function of intervals to every box.
+#[inline(always)]
+fn sweep_boxes<const OUTPUTS: usize>(
+    enclose: Enclose<OUTPUTS>,
+    boxes: Boxes<'_>,
+    lo: &mut [f64],
+    hi: &mut [f64],
+) {
+    let count = boxes.lo[0].len();
+    for place in 0..count {
+        let [x, y, z] =
+            [0, 1, 2].map(|axis| Interval { lo: boxes.lo[axis][place], hi: boxes.hi[axis][place] });
+        for (output, enclosure) in enclose(x, y, z).into_iter().enumerate() {
+            (lo[output * count + place], hi[output * count + place]) = (enclosure.lo, enclosure.hi);
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! This project as a renderer.
+
+use std::error::Error;
+use std::sync::Arc;
+use std::time::Instant;
+
+use clap::ValueEnum;
+use iso_expr::{Engine, Interpreter, Program};
+use iso_grid::{Certified, Grid, GridSettings, Surface, Tracer};
+use iso_jit::Jit;
+use iso_render::{Camera, Layers, Picture, Scene, Shading, Status, StatusCounts, render};
+
+use crate::depths::Depths;
+use crate::renderer::Renderer;
+use crate::view::SquareView;
+
+/// How rays are followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// With proof.
+    Certified,
+    /// The paper's, with 30 cells along each axis.
+    Grid,
+}
+
+/// What evaluates formulas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum EngineName {
+    /// Native code.
+    Jit,
+    /// The interpreter.
+    Interpreter,
+}
+
+/// What this project says about a picture's pixels.
+pub struct Answer {
+    /// Where the surface is.
+    pub depths: Depths,
+    /// Which pixels are decided, either way.
+    pub decided: Vec<bool>,
+    /// Pixels by status.
+    pub counts: StatusCounts,
+}
+
+/// One surface, ready to be rendered.
+pub struct Iso {
+    surface: Surface,
+    tracer: Box<dyn Tracer>,
+    camera: Camera,
+    shading: Shading,
+    view: SquareView,
+    picture: Option<Picture>,
+}
+
+impl Iso {
+    /// This project's name in tables.
+    pub const NAME: &'static str = "iso";
+
+    /// Compiles the kernels and prepares the method.
+    ///
+    /// # Errors
+    /// When the formula cannot be compiled.
+    pub fn new(
+        program: &Program,
+        view: SquareView,
+        method: Method,
+        engine: EngineName,
+    ) -> Result<Self, Box<dyn Error>> {
+        let engine: Arc<dyn Engine> = match engine {
+            EngineName::Jit => Arc::new(Jit::new()?),
+            EngineName::Interpreter => Arc::new(Interpreter),
+        };
+        let surface = Surface::new(engine, program.clone(), program.with_gradient().simplified());
+        let region = view.region()?;
+        let tracer: Box<dyn Tracer> = match method {
+            Method::Certified => Box::new(Certified::new(&surface, region)?),
+            Method::Grid => Box::new(Grid::new(&surface, region, &GridSettings::default())?),
+        };
+        surface.gradients()?;
+        let camera = view.camera()?;
+        let shading = Shading::new(&camera, false);
+        Ok(Self { surface, tracer, camera, shading, view, picture: None })
+    }
+
+    fn draw(&self, layers: Layers) -> Result<Picture, Box<dyn Error>> {
+        let scene = Scene {
+            surface: &self.surface,
+            tracer: &*self.tracer,
+            camera: &self.camera,
+            shading: &self.shading,
+        };
+        Ok(render(&scene, self.view.size()?, layers, &|_, _| {})?)
+    }
+
+    fn depths_of(&self, picture: &Picture) -> Depths {
+        Depths(picture.depth.iter().map(|distance| distance - self.view.eye_distance()).collect())
+    }
+
+    /// All that is known of the picture, rendered for this purpose alone.
+    ///
+    /// # Errors
+    /// When memory does not suffice.
+    pub fn answer(&self) -> Result<Answer, Box<dyn Error>> {
+        let layers = Layers { depth: true, statuses: true, ..Layers::default() };
+        let picture = self.draw(layers)?;
+        Ok(Answer {
+            depths: self.depths_of(&picture),
+            decided: picture.statuses.iter().map(|status| *status != Status::Undecided).collect(),
+            counts: picture.counts,
+        })
+    }
+}
+
+impl Renderer for Iso {
+    fn name(&self) -> &'static str {
+        Self::NAME
+    }
+
+    fn render(&mut self) -> Result<f64, Box<dyn Error>> {
+        self.picture = None;
+        let start = Instant::now();
+        let picture = self.draw(Layers { depth: true, normals: true, ..Layers::default() })?;
+        let seconds = start.elapsed().as_secs_f64();
+        self.picture = Some(picture);
+        Ok(seconds)
+    }
+
+    fn depths(&self) -> Result<Depths, Box<dyn Error>> {
+        Ok(self.depths_of(self.picture.as_ref().ok_or("nothing was rendered yet")?))
+    }
+}
