@@ -35,7 +35,10 @@ impl Batch {
 
     /// The boxes.
     pub fn boxes(&self) -> Boxes<'_> {
-        let slices = |ends: &'_ [Vec<f64>; 3]| -> [&'_ [f64]; 3] { [&ends[0], &ends[1], &ends[2]] };
         Boxes { lo: slices(&self.lo), hi: slices(&self.hi) }
     }
+}
+
+fn slices([x, y, z]: &[Vec<f64>; 3]) -> [&[f64]; 3] {
+    [x, y, z]
 }

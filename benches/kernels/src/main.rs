@@ -21,9 +21,10 @@ use contest::{Discipline, Entry, Formula};
 use native::NATIVES;
 
 /// How often each contender is measured.
-const TURNS: usize = 25;
-/// The least that one measurement takes, far more than the clock's resolution.
-const LEAST: Duration = Duration::from_millis(2);
+const TURNS: usize = 51;
+/// The least that one measurement takes: far more than the clock's resolution, and less than other programs are given at a
+/// time, so that most measurements are not interrupted.
+const LEAST: Duration = Duration::from_micros(300);
 
 fn main() -> Result<(), Box<dyn Error>> {
     let machine = Machine::here();

@@ -79,12 +79,12 @@ macro_rules! sweeps {
             }
         }
 
-        pub(super) fn values(points: Points<'_>, values: &mut [f64]) {
+        pub(crate) fn values(points: Points<'_>, values: &mut [f64]) {
             // SAFETY: `Native` says which processors the function may be called on: those with the features.
             unsafe { sweep_values(points.x, points.y, points.z, values) }
         }
 
-        pub(super) fn gradients(points: Points<'_>, values: &mut [f64]) {
+        pub(crate) fn gradients(points: Points<'_>, values: &mut [f64]) {
             let count = points.x.len();
             let (values, rest) = values.split_at_mut(count);
             let (along_x, rest) = rest.split_at_mut(count);

@@ -1,11 +1,6 @@
 //! Operations that Rust does not write as signs, with the values that the engines give them.
 
-pub(crate) use core_math::{cos, exp, sin};
-
-#[inline(always)]
-pub(crate) fn minimum(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a < b { a } else { b }
-}
+pub(crate) use core_math::{cos, sin};
 
 #[inline(always)]
 pub(crate) fn maximum(a: f64, b: f64) -> f64 {
@@ -15,11 +10,6 @@ pub(crate) fn maximum(a: f64, b: f64) -> f64 {
 #[inline(always)]
 pub(crate) fn less(a: f64, b: f64) -> f64 {
     truth(a, b, a < b)
-}
-
-#[inline(always)]
-pub(crate) fn less_or_equal(a: f64, b: f64) -> f64 {
-    truth(a, b, a <= b)
 }
 
 #[inline(always)]

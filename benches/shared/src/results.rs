@@ -2,15 +2,15 @@
 
 use std::error::Error;
 use std::fs::File;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::machine::Machine;
 
-/// A table of raw results in `benches/results/`. Each row begins with the date, the processor and its cores.
+/// A table of raw results in `benches/results/`. Its first line, after `#`, tells the machine and the day.
 pub struct Results {
     file: csv::Writer<File>,
     path: PathBuf,
-    machine: [String; 3],
 }
 
 impl Results {
@@ -19,12 +19,14 @@ impl Results {
     /// # Errors
     /// When the file cannot be written.
     pub fn create(name: &str, machine: &Machine, columns: &[&str]) -> Result<Self, Box<dyn Error>> {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../results").canonicalize()?;
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../results");
+        std::fs::create_dir_all(&folder)?;
         let path = folder.join(format!("{name}-{}.csv", machine.date));
-        let mut file = csv::Writer::from_path(&path)?;
-        file.write_record(["date", "processor", "cores"].iter().chain(columns))?;
-        let machine = [machine.date.clone(), machine.processor.clone(), machine.cores.to_string()];
-        Ok(Self { file, path, machine })
+        let mut file = File::create(&path)?;
+        writeln!(file, "# {machine}")?;
+        let mut file = csv::Writer::from_writer(file);
+        file.write_record(columns)?;
+        Ok(Self { file, path })
     }
 
     /// Adds one row.
@@ -32,8 +34,7 @@ impl Results {
     /// # Errors
     /// When the file cannot be written.
     pub fn row<T: ToString>(&mut self, fields: impl IntoIterator<Item = T>) -> Result<(), Box<dyn Error>> {
-        let fields = fields.into_iter().map(|field| field.to_string());
-        self.file.write_record(self.machine.iter().cloned().chain(fields))?;
+        self.file.write_record(fields.into_iter().map(|field| field.to_string()))?;
         self.file.flush()?;
         Ok(())
     }
