@@ -32,10 +32,14 @@ fn main() {
 fn write_values(code: &mut String, name: &str, program: &Program) {
     let outputs = program.outputs().len();
     let write = |code: &mut String| -> std::fmt::Result {
-        writeln!(code, "#[inline(always)]\npub(crate) fn {name}(x: f64, y: f64, z: f64) -> [f64; {outputs}] {{")?;
+        writeln!(
+            code,
+            "#[inline(always)]\npub(crate) fn {name}(x: f64, y: f64, z: f64) -> [f64; {outputs}] {{"
+        )?;
         for (id, node) in program.iter() {
             if let Node::Apply(operation, _) = node {
-                let operands: Vec<_> = node.operands().iter().map(|operand| value(program, *operand)).collect();
+                let operands: Vec<_> =
+                    node.operands().iter().map(|operand| value(program, *operand)).collect();
                 writeln!(code, "    let v{} = {};", id.index(), value_of(*operation, &operands))?;
             }
         }
@@ -101,7 +105,8 @@ fn write_boxes(code: &mut String, name: &str, program: &Program) {
         None => "None".to_owned(),
     };
     let constant = name.to_uppercase();
-    writeln!(code, "pub(crate) const {constant}: Option<Enclose<{outputs}>> = {function};").expect("strings have room");
+    writeln!(code, "pub(crate) const {constant}: Option<Enclose<{outputs}>> = {function};")
+        .expect("strings have room");
 }
 
 fn interval(program: &Program, id: NodeId) -> String {

@@ -23,7 +23,8 @@ impl Batch {
             let coordinate = |place| 2.0 * (0.5 + f64::from(place) * G.powi(-axis)).fract() - 1.0;
             (0..COUNT as u32).map(|place| radius * coordinate(place)).collect::<Vec<f64>>()
         });
-        let moved = |by: f64| points.clone().map(|axis| axis.iter().map(|coordinate| coordinate + by).collect());
+        let moved =
+            |by: f64| points.clone().map(|axis| axis.iter().map(|coordinate| coordinate + by).collect());
         Self { lo: moved(-radius / 64.0), hi: moved(radius / 64.0), points }
     }
 

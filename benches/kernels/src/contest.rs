@@ -3,7 +3,9 @@
 use std::hint::black_box;
 
 use iso_expr::engine::{Enclosures, Points};
-use iso_expr::{BatchKernel, BoxKernel, CompileError, Decoration, Engine, Interpreter, PointKernel, Program, Scratch};
+use iso_expr::{
+    BatchKernel, BoxKernel, CompileError, Decoration, Engine, Interpreter, PointKernel, Program, Scratch,
+};
 use iso_jit::Jit;
 
 use crate::batch::{Batch, COUNT};

@@ -28,10 +28,7 @@ pub(crate) fn heart(x: f64, y: f64, z: f64) -> f64 {
 pub(crate) fn barth(x: f64, y: f64, z: f64) -> f64 {
     const GOLDEN_SQUARED: f64 = 2.618033988749895;
     let (x2, y2, z2) = (x * x, y * y, z * z);
-    let planes = 4.0
-        * (GOLDEN_SQUARED * x2 - y2)
-        * (GOLDEN_SQUARED * y2 - z2)
-        * (GOLDEN_SQUARED * z2 - x2);
+    let planes = 4.0 * (GOLDEN_SQUARED * x2 - y2) * (GOLDEN_SQUARED * y2 - z2) * (GOLDEN_SQUARED * z2 - x2);
     let ball = x2 + y2 + z2 - 1.0;
     maximum(planes - 4.23606797749979 * (ball * ball), x2 + y2 + z2 - 3.0)
 }

@@ -46,7 +46,14 @@ fn main() -> Result<(), Box<dyn Error>> {
                 for (turn, nanoseconds) in nanoseconds.values().iter().enumerate() {
                     let operations = value.with_powers_expanded().operations().to_string();
                     let (turn, nanoseconds) = (turn.to_string(), rounded(*nanoseconds, 5));
-                    results.row([native.name, &operations, discipline.name(), engine, &turn, &nanoseconds])?;
+                    results.row([
+                        native.name,
+                        &operations,
+                        discipline.name(),
+                        engine,
+                        &turn,
+                        &nanoseconds,
+                    ])?;
                 }
             }
         }
@@ -102,7 +109,8 @@ fn print_heading() {
 }
 
 fn print_row(formula: &str, discipline: Discipline, measured: &[(&'static str, Samples)]) {
-    let samples = |name: &str| measured.iter().find(|(engine, _)| *engine == name).map(|(_, samples)| samples);
+    let samples =
+        |name: &str| measured.iter().find(|(engine, _)| *engine == name).map(|(_, samples)| samples);
     let ratio = |a: &str, b: &str| Some(samples(a)?.over(samples(b)?));
     let columns = ["interpreter", "jit", "rust", "rust avx512"].map(|name| samples(name).cloned());
     print!("{formula:<11}{:<15}", discipline.name());

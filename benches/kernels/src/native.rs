@@ -4,8 +4,8 @@
 
 use std::arch::is_x86_feature_detected;
 
-use iso_expr::engine::{Boxes, Points};
 use iso_expr::Interval;
+use iso_expr::engine::{Boxes, Points};
 
 use crate::{formulas, operations};
 

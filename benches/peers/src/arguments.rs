@@ -72,8 +72,11 @@ impl Arguments {
             };
             return self.models.iter().map(model).collect();
         }
-        let is_wanted = |subject: &&Subject| self.surfaces.is_empty() || self.surfaces.iter().any(|name| name == subject.name);
-        let surface = |subject: &Subject| Ok(body(subject.name.to_owned(), subject.program()?, subject.radius));
+        let is_wanted = |subject: &&Subject| {
+            self.surfaces.is_empty() || self.surfaces.iter().any(|name| name == subject.name)
+        };
+        let surface =
+            |subject: &Subject| Ok(body(subject.name.to_owned(), subject.program()?, subject.radius));
         SUBJECTS.iter().filter(is_wanted).map(surface).collect()
     }
 }

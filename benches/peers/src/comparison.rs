@@ -119,7 +119,8 @@ impl Comparison {
                 [error.largest, error.mean, self.view.pixel()].map(|length| format!("{length:.3e}"));
             let counts = [self.counts.hit, self.counts.touch, self.counts.miss, self.counts.undecided];
             let fields = [surface.clone(), size.clone(), (*name).to_owned(), largest, mean, pixel];
-            let counts = std::iter::once(error.mismatches.to_string()).chain(counts.map(|count| count.to_string()));
+            let counts =
+                std::iter::once(error.mismatches.to_string()).chain(counts.map(|count| count.to_string()));
             errors.row(fields.into_iter().chain(counts))?;
         }
         Ok(())

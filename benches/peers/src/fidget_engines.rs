@@ -31,8 +31,10 @@ impl<F: MathFunction> Fidget<F> {
     pub fn new(name: &'static str, program: &Program, view: SquareView) -> Result<Self, Box<dyn Error>> {
         let (context, root) = fidget_graph(program)?;
         let shape = Shape::new(&context, root)?;
-        let config =
-            RenderConfig { image_size: VoxelSize::from(view.size), world_to_model: view.fidget().world_to_model() };
+        let config = RenderConfig {
+            image_size: VoxelSize::from(view.size),
+            world_to_model: view.fidget().world_to_model(),
+        };
         Ok(Self { name, shape, config, view, image: None })
     }
 }

@@ -99,13 +99,9 @@ fn trace_seconds(messages: &str) -> Option<f64> {
 fn scene(formula: &str, steepness: f64, view: &SquareView) -> String {
     let SquareView { radius, .. } = *view;
     let width = 2.0 * radius;
-    let [eye, forward, right, up] = [
-        view.eye(),
-        SquareView::forward(),
-        width * SquareView::right(),
-        width * SquareView::up(),
-    ]
-    .map(vector);
+    let [eye, forward, right, up] =
+        [view.eye(), SquareView::forward(), width * SquareView::right(), width * SquareView::up()]
+            .map(vector);
     // The pattern repeats with period 1 along the line of sight, and is 0 in the plane that touches the ball in front.
     let start = vector(-radius * SquareView::forward());
     format!(

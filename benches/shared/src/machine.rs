@@ -37,7 +37,8 @@ impl fmt::Display for Machine {
 fn processor() -> Option<String> {
     let description = std::fs::read_to_string("/proc/cpuinfo").ok()?;
     let field = |name: &str| {
-        let line = description.lines().find(|line| line.split(':').next().is_some_and(|key| key.trim() == name))?;
+        let line =
+            description.lines().find(|line| line.split(':').next().is_some_and(|key| key.trim() == name))?;
         Some(line.split_once(':')?.1.trim())
     };
     Some(format!("{} (family {}, model {})", field("model name")?, field("cpu family")?, field("model")?))

@@ -52,11 +52,7 @@ pub const SUBJECTS: [Subject; 12] = [
                   - 1/(x^2 + y^2 + (z - 0.8)^2)",
         radius: 2.2,
     },
-    Subject {
-        name: "heart",
-        formula: "(x^2 + 2.25y^2 + z^2 - 1)^3 - x^2 z^3 - 0.1125y^2 z^3",
-        radius: 1.6,
-    },
+    Subject { name: "heart", formula: "(x^2 + 2.25y^2 + z^2 - 1)^3 - x^2 z^3 - 0.1125y^2 z^3", radius: 1.6 },
     Subject {
         name: "blobs",
         formula: "0.5 - exp(-4((x - 0.6)^2 + y^2 + z^2)) - exp(-3((x + 0.5)^2 + (y - 0.3)^2 + z^2)) \
