@@ -56,12 +56,15 @@ impl Discipline {
     }
 }
 
+/// Fills a buffer of [`Discipline::room`] with the outputs for a whole batch.
+pub type Fill<'a> = Box<dyn FnMut(&mut [f64]) + 'a>;
+
 /// One way of evaluating a batch.
 pub struct Entry<'a> {
     /// The engine, or what Rust was compiled for.
     pub name: &'static str,
-    /// Fills a buffer of [`Discipline::room`].
-    pub fill: Box<dyn FnMut(&mut [f64]) + 'a>,
+    /// Evaluates it.
+    pub fill: Fill<'a>,
 }
 
 impl<'a> Entry<'a> {

@@ -24,7 +24,7 @@ impl Summary {
              largest in pixel widths, and silhouette pixels that differ.\n"
         );
         println!(
-            "{:<11}{:>24}{:>24}{:>24}{:>10}{:>21}{:>14}{:>26}{:>26}{:>26}  hit / touch / undecided",
+            "{:<11}{:>24}{:>24}{:>24}{:>10}{:>26}{:>15}{:>26}{:>26}{:>26}  hit / touch / undecided",
             "surface",
             "iso",
             VM,
@@ -53,7 +53,7 @@ impl Summary {
         let [vm_error, jit_error, pov_error] = [vm, jit, povray].map(|measured| error(measured, pixel));
         let counts = comparison.counts;
         println!(
-            "{:<11}{iso_time:>24}{vm_time:>24}{jit_time:>24}{:>10}{:>21}{:>14}{vm_error:>26}{jit_error:>26}\
+            "{:<11}{iso_time:>24}{vm_time:>24}{jit_time:>24}{:>10}{:>26}{:>15}{vm_error:>26}{jit_error:>26}\
              {pov_error:>26}  {} / {} / {}",
             comparison.surface,
             pov_time.unwrap_or_else(absent),
