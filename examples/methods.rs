@@ -11,10 +11,11 @@ mod scenes;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use iso_expr::{Engine, Interpreter};
+use iso_expr::Engine;
 use iso_grid::{
     Certified, Direct, Grid, GridSettings, Hit, Octree, Outcome, Ray, Surface, Tracer, Workspace,
 };
+use iso_jit::Jit;
 use scenes::{Scene, Status, Verdict};
 
 /// Cells along each axis: the finest of the paper's grids.
@@ -61,7 +62,7 @@ const METHODS: [Method; 4] = [
 const SAME_ROOT: f64 = 1e-6;
 
 fn main() {
-    let engine: Arc<dyn Engine> = Arc::new(Interpreter);
+    let engine: Arc<dyn Engine> = Arc::new(Jit::new().expect("this machine is one that code is made for"));
     let mut totals = [Tally::default(); METHODS.len()];
     let mut rows = Vec::new();
     for scene in scenes::all() {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::random::Random;
-use iso_expr::{Ast, Decoration, Engine, Interpreter, Interval, Program, Scratch};
+use iso_expr::{Ast, Decoration, Engine, Interpreter, Interval, Operation, Program, Scratch};
 use iso_grid::{Certified, Hit, Outcome, Ray, Region, Span, Surface, Tracer, Workspace};
 
 const X: DVec3 = DVec3::X;
@@ -248,13 +248,28 @@ fn first_certain_crossing(program: &Program, ray: &Ray, span: Span, steps: usize
 
 #[test]
 fn no_crossing_of_a_random_program_is_passed() {
+    let operations: Vec<_> = Operation::all().collect();
+    assert_no_crossing_is_passed(5, &operations, 2000);
+}
+
+#[test]
+fn no_crossing_of_a_random_polynomial_is_passed() {
+    use Operation::{Add, IntegerPower, Multiply, Negate, Subtract};
+    assert_no_crossing_is_passed(
+        6,
+        &[Add, Subtract, Subtract, Multiply, Multiply, Negate, IntegerPower],
+        1000,
+    );
+}
+
+fn assert_no_crossing_is_passed(seed: u64, allowed: &[Operation], programs: usize) {
     const STEPS: usize = 200;
-    let mut random = Random::new(5);
+    let mut random = Random::new(seed);
     let region = Region::new(DVec3::splat(-2.0), DVec3::splat(2.0)).unwrap();
     let (mut crossings, mut hits) = (0, 0);
-    for number in 0..2000 {
+    for number in 0..programs {
         let operations = 1 + random.below(12);
-        let program = random.program(operations).simplified();
+        let program = random.program_of(operations, allowed).simplified();
         let surface =
             Surface::new(Arc::new(Interpreter), program.clone(), program.with_gradient().simplified());
         let tracer = Certified::new(&surface, region).unwrap();

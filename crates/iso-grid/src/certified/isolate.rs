@@ -125,9 +125,10 @@ fn halve(coefficients: &mut Vec<Interval>, first: usize) {
     }
 }
 
-/// Encloses the means of numbers of both intervals.
+/// Encloses the means of numbers of both intervals. They are halved before they are added, for a sum that overflows would be
+/// no bound of anything once halved.
 fn mean(a: Interval, b: Interval) -> Interval {
-    Interval { lo: round_down(0.5 * (a.lo + b.lo)), hi: round_up(0.5 * (a.hi + b.hi)) }
+    Interval { lo: round_down(0.5 * a.lo + 0.5 * b.lo), hi: round_up(0.5 * a.hi + 0.5 * b.hi) }
 }
 
 #[cfg(test)]
@@ -144,6 +145,13 @@ mod tests {
         for (found, expected) in coefficients.iter().zip(expected) {
             assert!(found.contains(expected) && found.width() < 1e-15, "{found} is not {expected}");
         }
+    }
+
+    #[test]
+    fn a_mean_of_huge_numbers_is_a_number() {
+        let huge = Interval::point(0.9 * f64::MAX);
+        let found = mean(huge, huge);
+        assert!(found.contains(0.9 * f64::MAX) && found.is_bounded(), "{found}");
     }
 
     #[test]
