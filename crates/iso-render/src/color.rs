@@ -9,7 +9,7 @@ pub type Color = DVec3;
 
 /// The colour of three sRGB bytes.
 pub fn color_from_srgb(bytes: [u8; 3]) -> Color {
-    DVec3::from_array(bytes.map(|byte| linear(f64::from(byte))))
+    DVec3::from_array(bytes.map(|byte| BYTES[usize::from(byte)]))
 }
 
 /// The nearest three sRGB bytes; what is brighter than 1 becomes 1.
@@ -22,6 +22,9 @@ fn linear(component: f64) -> f64 {
     let encoded = component / 255.0;
     if encoded <= 0.040_45 { encoded / 12.92 } else { core_math::pow((encoded + 0.055) / 1.055, 2.4) }
 }
+
+/// The linear light of each byte.
+static BYTES: LazyLock<[f64; 256]> = LazyLock::new(|| std::array::from_fn(|byte| linear(byte as f64)));
 
 /// The linear light at which each byte gives way to the next.
 static BORDERS: LazyLock<[f64; 255]> =

@@ -10,6 +10,7 @@ mod picture;
 mod render;
 mod shading;
 mod size;
+mod smooth;
 
 pub use camera::{Camera, CameraError, Projection, View};
 pub use color::{Color, color_from_srgb};
@@ -18,3 +19,4 @@ pub use picture::{Layers, Picture, Status, StatusCounts};
 pub use render::{Progress, RenderError, Scene, render};
 pub use shading::Shading;
 pub use size::{Size, SizeError};
+pub use smooth::Smoothing;

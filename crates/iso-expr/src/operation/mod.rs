@@ -109,8 +109,7 @@ pub enum Operation {
 }
 
 impl Operation {
-    /// The largest exponent that [`Operation::IntegerPower`] takes; larger ones are left to [`Operation::Power`]'s
-    /// general rule by the parser.
+    /// The largest exponent that [`Operation::IntegerPower`] takes; the parser makes larger integer powers of several.
     pub const LARGEST_POWER: u32 = 1024;
 
     /// Every operation, in the order of the table.
