@@ -1,0 +1,99 @@
+//! Smooth edges: pictures drawn larger and averaged.
+
+use crate::color::{Color, color_from_srgb, srgb_from_color};
+use crate::{Picture, Size, SizeError};
+
+/// How many pixels, across and down, are drawn for each pixel of the finished picture.
+///
+/// Along its silhouette a surface covers pixels in part. Each finished pixel is the average, in linear light, of a square
+/// of drawn ones: a box filter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Smoothing(u32);
+
+impl Smoothing {
+    /// Every pixel is drawn once, and is what its ray says.
+    pub const NONE: Self = Self(1);
+    /// The most pixels, across and down, that are averaged.
+    pub const MOST: u32 = 16;
+
+    /// Averages squares of `factor` by `factor` pixels; `None` unless it is from 1 to [`Smoothing::MOST`].
+    pub fn new(factor: u32) -> Option<Self> {
+        (1..=Self::MOST).contains(&factor).then_some(Self(factor))
+    }
+
+    /// The size in which a picture is drawn that shall have `size`.
+    ///
+    /// # Errors
+    /// When there are too many pixels.
+    pub fn drawn(self, size: Size) -> Result<Size, SizeError> {
+        Size::new(size.width().saturating_mul(self.0), size.height().saturating_mul(self.0))
+    }
+
+    /// Turns a picture that was drawn in the size of [`Smoothing::drawn`] into the finished one.
+    ///
+    /// Only its colours are averaged, for distances, normals, points and statuses have no average: those layers go. The
+    /// counts stay those of the drawn pixels.
+    pub fn finish(self, picture: &mut Picture) {
+        if self == Self::NONE {
+            return;
+        }
+        let drawn = picture.size;
+        let size = Size::new(drawn.width() / self.0, drawn.height() / self.0)
+            .expect("the finished picture has pixels");
+        let finished = (0..size.height())
+            .flat_map(|row| (0..size.width()).map(move |column| (column, row)))
+            .map(|(column, row)| srgb_from_color(self.average(&picture.color, drawn, column, row)))
+            .collect();
+        (picture.size, picture.color) = (size, finished);
+        picture.depth.clear();
+        picture.normals.clear();
+        picture.points.clear();
+        picture.statuses.clear();
+    }
+
+    /// The average of the drawn pixels that belong to a finished one.
+    fn average(self, pixels: &[[u8; 3]], drawn: Size, column: u32, row: u32) -> Color {
+        let factor = self.0;
+        let square = (0..factor).flat_map(|line| {
+            let start = drawn.offset(column * factor, row * factor + line);
+            &pixels[start..start + factor as usize]
+        });
+        square.map(|&bytes| color_from_srgb(bytes)).sum::<Color>() / f64::from(factor * factor)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Layers;
+
+    #[test]
+    fn squares_of_pixels_are_averaged_in_linear_light() {
+        let smoothing = Smoothing::new(2).unwrap();
+        let drawn = smoothing.drawn(Size::new(2, 1).unwrap()).unwrap();
+        assert_eq!((drawn.width(), drawn.height()), (4, 2));
+        let mut picture = Picture::with_room(drawn, Layers::COLOR).unwrap();
+        // The left square is half black and half white, the right one of one colour.
+        let (black, white, plain) = ([0; 3], [255; 3], [12, 34, 56]);
+        picture.color = vec![black, white, plain, plain, white, black, plain, plain];
+        smoothing.finish(&mut picture);
+        // Half of the light is byte 188 in sRGB.
+        assert_eq!(picture.color, [[188; 3], plain]);
+        assert_eq!((picture.size.width(), picture.size.height()), (2, 1));
+    }
+
+    #[test]
+    fn no_smoothing_changes_nothing() {
+        let size = Size::new(3, 2).unwrap();
+        let mut picture = Picture::with_room(size, Layers { depth: true, ..Layers::COLOR }).unwrap();
+        Smoothing::NONE.finish(&mut picture);
+        assert_eq!((picture.size, picture.depth.len(), picture.color.len()), (size, 6, 6));
+    }
+
+    #[test]
+    fn factors_are_bounded() {
+        assert!(Smoothing::new(0).is_none() && Smoothing::new(17).is_none());
+        let smoothing = Smoothing::new(16).unwrap();
+        assert!(smoothing.drawn(Size::new(32768, 32768).unwrap()).is_err());
+    }
+}
