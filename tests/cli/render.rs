@@ -166,3 +166,16 @@ fn cameras_can_stand_anywhere() {
     render(&case, TORUS, &["--eye", "1,1,1", "--yaw", "-3"]).exits(2).mentions("--yaw");
     render(&case, TORUS, &["--yaw", "-30", "--pitch", "-20", "-q"]).exits(0);
 }
+
+#[test]
+fn smooth_pictures_have_the_size_asked_for() {
+    let case = Case::new();
+    let json = render(&case, SPHERE, &["--smooth", "4", "--json"]).exits(0).json();
+    assert_eq!((&json["width"], &json["height"]), (&48.into(), &32.into()));
+    let drawn = ["hit", "touch", "miss", "undecided"].map(|status| json["pixels"][status].as_u64().unwrap());
+    assert_eq!(drawn.iter().sum::<u64>(), 16 * 48 * 32);
+    assert_eq!(image::image_dimensions(case.path("iso.png")).unwrap(), (48, 32));
+    render(&case, SPHERE, &["--smooth", "2", "--depth", "depth.exr"]).exits(2).mentions("--smooth");
+    render(&case, SPHERE, &["--smooth", "17"]).exits(2).mentions("1 to 16 pixels");
+    case.run(&["render", SPHERE, "--size", "32768x32768", "--smooth", "2"]).exits(2).mentions("--smooth");
+}

@@ -31,7 +31,7 @@ pub(crate) struct Summary {
     pub(crate) operations: usize,
     /// Operations of the simplified program of F − C and its gradient.
     pub(crate) gradient_operations: usize,
-    /// Pixels by status.
+    /// Drawn pixels by status: more than the picture has, if it is smoothed.
     pub(crate) pixels: StatusCounts,
     /// Counts of work.
     pub(crate) counters: Counters,

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use glam::DVec3;
 use iso_grid::Region;
-use iso_render::Size;
+use iso_render::{Size, Smoothing};
 
 /// A finite number.
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
@@ -63,6 +63,12 @@ fn numbers(text: &str) -> Result<Vec<f64>, String> {
 pub(crate) fn size(text: &str) -> Result<Size, String> {
     let (width, height) = text.split_once(['x', 'X', '×']).unwrap_or((text, text));
     Size::new(count(width)?, count(height)?).map_err(|error| error.to_string())
+}
+
+/// How many pixels, across and down, are averaged.
+pub(crate) fn smoothing(text: &str) -> Result<Smoothing, String> {
+    Smoothing::new(count(text)?)
+        .ok_or_else(|| format!("1 to {} pixels can be averaged each way", Smoothing::MOST))
 }
 
 /// A value for a parameter of the formula.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use iso_expr::Engine;
 use iso_grid::{Counters, Region, Surface};
-use iso_render::{Picture, Scene, Shading, Size, render};
+use iso_render::{Picture, Scene, Shading, Size, Smoothing, render};
 use rayon::ThreadPool;
 
 use crate::camera::camera;
@@ -42,7 +42,9 @@ struct Request {
     region: Option<Region>,
     method: Method,
     camera: CameraFlags,
-    size: Size,
+    smoothing: Smoothing,
+    /// The size in which the picture is drawn, before it is smoothed.
+    drawn: Size,
     shows_status: bool,
     files: PictureFiles,
     speech: Speech,
@@ -61,6 +63,7 @@ enum Speech {
 impl Request {
     fn resolve(flags: RenderFlags, phases: &mut Phases) -> Result<Self, Failure> {
         let method = Method::resolve(&flags.method)?;
+        let smoothing = flags.output.smooth;
         let files = PictureFiles::resolve(&flags.output)?;
         let speech = match (flags.output.json, flags.output.quiet) {
             (true, _) => Speech::Json,
@@ -77,7 +80,10 @@ impl Request {
             region: flags.method.region,
             method,
             camera: flags.camera,
-            size: flags.output.size,
+            smoothing,
+            drawn: smoothing
+                .drawn(flags.output.size)
+                .map_err(|error| Failure::usage(error.to_string(), "choose a smaller --size or --smooth"))?,
             shows_status: flags.output.show_status,
             files,
             speech,
@@ -97,8 +103,8 @@ impl Request {
         counters += preprocessing;
         Ok(Summary {
             files: self.files.names(),
-            width: self.size.width(),
-            height: self.size.height(),
+            width: picture.size.width(),
+            height: picture.size.height(),
             box_min: region.min().to_array(),
             box_max: region.max().to_array(),
             method: self.method.name(),
@@ -119,15 +125,16 @@ impl Request {
         region: Region,
         phases: &mut Phases,
     ) -> Result<(Picture, Counters), Failure> {
-        let camera = camera(&self.camera, &region, self.size)?;
+        let camera = camera(&self.camera, &region, self.drawn)?;
         let tracer = add_to(&mut phases.preprocess, || self.method.prepare(surface, region))?;
         let shading = Shading::new(&camera, self.shows_status);
         let scene = Scene { surface, tracer: tracer.as_ref(), camera: &camera, shading: &shading };
         let progress = Progress::new(self.speech == Speech::Line);
         let report = |done, all| progress.report(done, all);
-        let picture = render(&scene, self.size, self.files.layers(), &report);
+        let picture = render(&scene, self.drawn, self.files.layers(), &report);
         progress.finish();
-        let picture = picture?;
+        let mut picture = picture?;
+        add_to(&mut phases.shade, || self.smoothing.finish(&mut picture));
         phases.trace += 1e3 * picture.trace_seconds;
         phases.shade += 1e3 * picture.shade_seconds;
         Ok((picture, tracer.preprocessing()))

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use iso_render::Size;
+use iso_render::{Size, Smoothing};
 
 use super::{CameraFlags, EngineFlag, FormulaFlags, LevelFlag, MethodFlags, ThreadsFlag};
 use crate::values;
@@ -43,6 +43,11 @@ pub(crate) struct PictureFlags {
     #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "512x512")]
     pub(crate) size: Size,
 
+    /// Smooth edges: draw N by N pixels for each pixel of the picture and average them
+    #[arg(long, value_name = "N", value_parser = values::smoothing, default_value = "1")]
+    #[arg(conflicts_with_all = ["depth", "normals", "points"])]
+    pub(crate) smooth: Smoothing,
+
     /// Paint over pixels that are not proven: touches green, undecided ones magenta
     #[arg(long)]
     pub(crate) show_status: bool,
@@ -73,5 +78,6 @@ Examples:
   iso render '(x^2+y^2-1)^2 + 4z^2 + 0.5x = 0.2' -o doi.png
   iso render 'x^4 - 5x^2 + y^4 - 5y^2 + z^4 - 5z^2 + 11.8' --box -3,3 --ortho --view-width 8
   iso render 'sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)' --level 0.3 --box -4,4 --yaw -20 --pitch 40
+  iso render 'x^4 + y^4 + z^4 = 1' --smooth 3 -o figure.png
   iso render '-x^2 - y^2 - z^2' --level -1 --method grid --grid 60 --json
   iso render @heart.txt --set a=0.5 --size 1920x1080 --depth depth.exr --points points.csv";
