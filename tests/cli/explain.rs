@@ -3,7 +3,7 @@
 use crate::harness::Case;
 
 const PAPER: &str = "(x^2+y^2-1)^2 + 4z^2 + 0.5x = 0.2";
-const SECTIONS: [&str; 4] = ["tree", "program", "simplified", "gradient"];
+const SECTIONS: [&str; 6] = ["tree", "program", "simplified", "gradient", "clif", "assembly"];
 
 #[test]
 fn every_stage_is_shown() {
@@ -21,10 +21,10 @@ fn every_stage_is_shown() {
 #[test]
 fn sections_can_be_chosen() {
     let case = Case::new();
-    let arguments = ["explain", PAPER, "--section", "tree,gradient", "--json"];
+    let arguments = ["explain", PAPER, "--section", "tree,clif", "--json"];
     let json = case.run(&arguments).exits(0).json();
     let sections: Vec<&String> = json.as_object().unwrap().keys().collect();
-    assert_eq!(sections, ["gradient", "tree"]);
+    assert_eq!(sections, ["clif", "tree"]);
 }
 
 #[test]

@@ -5,12 +5,13 @@ use std::time::Duration;
 
 use clap::ValueEnum;
 use iso_expr::Program;
+use iso_jit::{Jit, Kind};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
 use crate::clock::{milliseconds, timed};
 use crate::failure::Failure;
-use crate::flags::{ExplainFlags, Section};
+use crate::flags::{ExplainFlags, KernelName, Section};
 use crate::formula::{Source, minus_level};
 use crate::output::to_standard_output;
 
@@ -77,11 +78,25 @@ fn stages(flags: &ExplainFlags) -> Result<Vec<(Section, Stage)>, Failure> {
     let program = program?;
     let simplified = timed(|| program.simplified());
     let gradient = timed(|| simplified.0.with_gradient().simplified());
+    let listing = Jit::new()?.listing(&simplified.0, kind(flags.sections.kernel))?;
     let tree = ast.outline().to_string();
     Ok(vec![
         (Section::Tree, Stage::new(tree.lines().count(), "lines", parse_time, tree)),
         (Section::Program, Stage::program(&(program, lower_time))),
         (Section::Simplified, Stage::program(&simplified)),
         (Section::Gradient, Stage::program(&gradient)),
+        (
+            Section::Clif,
+            Stage::new(listing.clif.lines().count(), "lines", listing.compile_time, listing.clif),
+        ),
+        (Section::Assembly, Stage::new(listing.code_bytes, "bytes", listing.compile_time, listing.assembly)),
     ])
+}
+
+fn kind(name: KernelName) -> Kind {
+    match name {
+        KernelName::Point => Kind::Point,
+        KernelName::Batch => Kind::Batch,
+        KernelName::Boxes => Kind::Boxes,
+    }
 }

@@ -26,6 +26,10 @@ pub(crate) struct SectionFlags {
     #[arg(long = "section", value_name = "SECTIONS", value_enum, value_delimiter = ',')]
     pub(crate) sections: Vec<Section>,
 
+    /// The kernel whose intermediate code and machine code are shown
+    #[arg(long, value_name = "KERNEL", value_enum, default_value_t = KernelName::Point)]
+    pub(crate) kernel: KernelName,
+
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
@@ -48,8 +52,20 @@ pub(crate) enum Section {
     Assembly,
 }
 
+/// What a kernel runs over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum KernelName {
+    /// F at one point
+    Point,
+    /// F at many points, in lanes
+    Batch,
+    /// Enclosures of F over many boxes
+    Boxes,
+}
+
 const EXAMPLES: &str = "\
 Examples:
   iso explain '(x^2+y^2-1)^2 + 4z^2 + 0.5x = 0.2'
   iso explain 'x^3 y + sin(x)' --section simplified,gradient
+  iso explain 'x^2 + y^2 - z' --section assembly --kernel batch
   iso explain @surface.txt --json";

@@ -12,7 +12,7 @@ mod trace;
 pub(crate) use bench::BenchFlags;
 pub(crate) use camera::CameraFlags;
 pub(crate) use eval::EvalFlags;
-pub(crate) use explain::{ExplainFlags, Section};
+pub(crate) use explain::{ExplainFlags, KernelName, Section};
 pub(crate) use formula::{FormulaFlags, LevelFlag};
 pub(crate) use method::{EngineFlag, EngineName, MethodFlags, MethodName, ThreadsFlag};
 pub(crate) use render::{PictureFlags, RenderFlags};
