@@ -179,3 +179,13 @@ fn smooth_pictures_have_the_size_asked_for() {
     render(&case, SPHERE, &["--smooth", "17"]).exits(2).mentions("1 to 16 pixels");
     case.run(&["render", SPHERE, "--size", "32768x32768", "--smooth", "2"]).exits(2).mentions("--smooth");
 }
+
+#[test]
+fn a_formula_too_large_for_native_code_is_drawn_all_the_same() {
+    let terms: Vec<String> = (0..4000).map(|term| format!("(x-{term}e-6)^2/4000")).collect();
+    let formula = format!("{} + y^2 + z^2 = 1", terms.join("+"));
+    let json =
+        Case::new().run(&["render", &formula, "--size", "6", "--box", "-1.5,1.5", "--json"]).exits(0).json();
+    assert!(json["gradient_operations"].as_u64().unwrap() > 10_000, "native code would do");
+    assert!(json["pixels"]["hit"].as_u64().unwrap() > 0, "{json}");
+}

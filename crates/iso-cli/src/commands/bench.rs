@@ -7,15 +7,16 @@ use std::time::Duration;
 
 use glam::DVec3;
 use iso_expr::engine::Points;
-use iso_expr::{CompileError, Engine, Scratch};
+use iso_expr::{CompileError, Engine, Interpreter, Scratch};
 use iso_grid::Region;
+use iso_jit::Jit;
 use iso_render::{Camera, Layers, Projection, Scene, Shading, Size, View, render};
 use serde::Serialize;
 
 use crate::clock::{Spread, milliseconds, timed};
-use crate::engine::{engine, threads};
+use crate::engine::threads;
 use crate::failure::Failure;
-use crate::flags::{BenchFlags, EngineName};
+use crate::flags::BenchFlags;
 use crate::formula::{Programs, minus_level, understand};
 use crate::method::{Method, region};
 use crate::output::to_standard_output;
@@ -29,7 +30,7 @@ const LONG_ENOUGH: Duration = Duration::from_millis(5);
 pub(crate) fn run(flags: BenchFlags) -> Result<(), Failure> {
     let formula = understand(&flags.formula)?;
     let programs = Programs::new(&minus_level(&formula, flags.level.level)?);
-    let region = region(flags.method.region, &programs.surface(engine(EngineName::Interp)?))?;
+    let region = region(flags.method.region, &programs.surface(Arc::new(Interpreter)))?;
     let bench = Bench {
         programs,
         method: Method::resolve(&flags.method)?,
@@ -68,7 +69,7 @@ struct Round {
 
 impl Bench {
     fn report(&self, runs: usize) -> Result<Report, Failure> {
-        let engines = [engine(EngineName::Interp)?, engine(EngineName::Jit)?];
+        let engines: [Arc<dyn Engine>; 2] = [Arc::new(Interpreter), Arc::new(Jit::new()?)];
         // A round that does not count fills caches and wakes the processor.
         for engine in &engines {
             self.round(engine)?;
