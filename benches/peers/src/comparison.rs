@@ -146,7 +146,9 @@ fn renderers_of(
         Fidget::<JitFunction>::new(JIT, program, view).map(|renderer| Box::new(renderer) as _),
     ];
     if arguments.povray_turns > 0 && PovRay::is_installed() {
-        renderers.push(PovRay::new(program, view, arguments.threads).map(|renderer| Box::new(renderer) as _));
+        let expected = |view| Iso::new(program, view, arguments.method, arguments.engine)?.answer();
+        let povray = PovRay::tuned(program, view, arguments.threads, expected);
+        renderers.push(povray.map(|renderer| Box::new(renderer) as _));
     }
     renderers
 }

@@ -13,11 +13,20 @@ use iso_expr::{Axis, Engine, Interpreter, Node, NodeId, Operation, Program, Scra
 use tempfile::TempDir;
 
 use crate::depths::Depths;
+use crate::iso::Answer;
 use crate::renderer::Renderer;
 use crate::view::SquareView;
 
 /// The accuracy asked for, along the ray.
 const ACCURACY: f64 = 1e-4;
+/// The width of the pictures by which `max_gradient` is found.
+const TRIAL_SIZE: u32 = 128;
+/// The most such pictures.
+const TRIALS: usize = 16;
+/// One pixel in so many of the surface may differ from what is expected: silhouettes are drawn differently.
+const TOLERATED: u64 = 200;
+/// Pictures that would take longer are left out.
+const LONGEST_SECONDS: f64 = 120.0;
 /// Points along each axis at which the steepness near the surface is looked for.
 const SAMPLES: usize = 64;
 /// The longest formula that is handed over: POV-Ray's have no names for parts, so what is used twice is written twice.
@@ -40,14 +49,46 @@ impl PovRay {
         Command::new("povray").arg("--version").output().is_ok()
     }
 
-    /// Writes the scene.
+    /// Finds the least `max_gradient` that leaves no holes, as users do by trial, and writes the scene.
+    ///
+    /// Trials begin with the steepness near the surface and double it until a small picture shows all that `expected` has.
     ///
     /// # Errors
-    /// When POV-Ray lacks an operation of the formula, the formula is too long, or files cannot be written.
-    pub fn new(program: &Program, view: SquareView, threads: usize) -> Result<Self, Box<dyn Error>> {
+    /// When POV-Ray lacks an operation of the formula, the formula is too long, no trial succeeds or would take too
+    /// long, or files cannot be written.
+    pub fn tuned(
+        program: &Program,
+        view: SquareView,
+        threads: usize,
+        expected: impl Fn(SquareView) -> Result<Answer, Box<dyn Error>>,
+    ) -> Result<Self, Box<dyn Error>> {
         let formula = expression(program)?;
+        let trial_view = SquareView { size: TRIAL_SIZE, ..view };
+        let Answer { depths, decided, counts } = expected(trial_view)?;
+        let mut max_gradient = steepness(program, &view)?;
+        for _ in 0..TRIALS {
+            let mut trial = Self::new(&formula, max_gradient, trial_view, threads)?;
+            let seconds = trial.render()? * (f64::from(view.size) / f64::from(TRIAL_SIZE)).powi(2);
+            if seconds > LONGEST_SECONDS {
+                return Err(format!("POV-Ray would take about {seconds:.0} seconds and is left out").into());
+            }
+            let holes = trial.depths()?.error_against(&depths, &decided).mismatches as u64;
+            if holes * TOLERATED <= counts.hit + counts.touch {
+                return Self::new(&formula, max_gradient, view, threads);
+            }
+            max_gradient *= 2.0;
+        }
+        Err("POV-Ray leaves holes whatever its max_gradient".into())
+    }
+
+    fn new(
+        formula: &str,
+        max_gradient: f64,
+        view: SquareView,
+        threads: usize,
+    ) -> Result<Self, Box<dyn Error>> {
         let folder = tempfile::tempdir()?;
-        std::fs::write(folder.path().join("scene.pov"), scene(&formula, steepness(program, &view)?, &view))?;
+        std::fs::write(folder.path().join("scene.pov"), scene(formula, max_gradient, &view))?;
         Ok(Self { folder, view, threads, rendered: false })
     }
 
@@ -96,7 +137,7 @@ fn trace_seconds(messages: &str) -> Option<f64> {
 }
 
 /// The scene file. The background has no blue, the surface has all of it; its red grows with the depth.
-fn scene(formula: &str, steepness: f64, view: &SquareView) -> String {
+fn scene(formula: &str, max_gradient: f64, view: &SquareView) -> String {
     let SquareView { radius, .. } = *view;
     let width = 2.0 * radius;
     let [eye, forward, right, up] =
@@ -110,8 +151,8 @@ fn scene(formula: &str, steepness: f64, view: &SquareView) -> String {
          camera {{ orthographic location {eye} direction {forward} right {right} up {up} }}\n\
          isosurface {{\n  \
            function {{ {formula} }}\n  \
-           contained_by {{ box {{ -{radius}, {radius} }} }}\n  \
-           accuracy {ACCURACY} max_gradient {steepness}\n  \
+           contained_by {{ sphere {{ 0, {radius} }} }}\n  \
+           accuracy {ACCURACY} max_gradient {max_gradient}\n  \
            pigment {{ gradient {forward} color_map {{ [0 rgb <0, 0, 1>] [1 rgb <1, 0, 1>] }} scale {width} translate {start} }}\n  \
            finish {{ ambient 0 diffuse 0 emission 1 }}\n\
          }}\n"
@@ -122,8 +163,7 @@ fn vector(vector: DVec3) -> String {
     format!("<{}, {}, {}>", vector.x, vector.y, vector.z)
 }
 
-/// The largest gradient near the surface, for `max_gradient`: over points of a lattice next to which the surface may pass.
-/// What users find by trial; the errors in the table show how well it serves.
+/// The largest gradient near the surface: over points of a lattice next to which the surface may pass.
 fn steepness(program: &Program, view: &SquareView) -> Result<f64, Box<dyn Error>> {
     let kernel = Interpreter.batch(&program.with_gradient().simplified())?;
     let spacing = 2.0 * view.radius / SAMPLES as f64;
