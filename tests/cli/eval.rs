@@ -133,9 +133,9 @@ fn wrong_tables_say_where_and_exit_with_1() {
         ("--boxes", "crossed.csv", "error: crossed.csv:2: no number lies between y_lo = 2 and y_hi = 1\n"),
     ] {
         let run = case.run(&["eval", "x", flag, name, "-o", "out.csv"]);
-        run.exits(1).prints("").reports(report);
+        run.exits(2).prints("").reports(report);
     }
-    case.run(&["eval", "x", "--points", "missing.csv"]).exits(1).mentions("missing.csv:1: cannot be read");
+    case.run(&["eval", "x", "--points", "missing.csv"]).exits(2).mentions("missing.csv:1: cannot be read");
     assert!(!case.names().contains(&"out.csv".to_owned()));
 }
 

@@ -138,7 +138,7 @@ fn formulas_that_are_no_text_are_refused() {
 #[test]
 fn a_formula_that_cannot_be_read_exits_with_1() {
     let case = Case::new();
-    render(&case, "@missing.txt", &[]).exits(1).mentions("cannot read missing.txt");
-    render(&case, "@.", &[]).exits(1);
+    render(&case, "@missing.txt", &[]).exits(2).mentions("cannot read missing.txt");
+    render(&case, "@.", &[]).exits(2);
     assert!(case.names().is_empty());
 }

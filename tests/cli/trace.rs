@@ -94,6 +94,6 @@ fn rays_that_are_none_are_refused() {
         ("endless.csv", "error: endless.csv:2: a ray needs six finite numbers\n"),
         ("partial.csv", "error: partial.csv:1: there is no column `dz`; the columns are ox,oy,oz,dx,dy\n"),
     ] {
-        case.run(&["trace", "x", "--rays", name]).exits(1).prints("").reports(report);
+        case.run(&["trace", "x", "--rays", name]).exits(2).prints("").reports(report);
     }
 }

@@ -78,10 +78,14 @@ impl Failure {
         Self::Usage { problem: problem.into(), help: Some(help.into()) }
     }
 
-    /// 2 for what the user can mend on the command line or in the formula, 1 for the rest.
+    /// 2 for what the user can mend in what was given: flags, formula, tables; 1 for the rest.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
-            Self::Usage { .. } | Self::Formula { .. } | Self::Camera(_) => 2,
+            Self::Usage { .. }
+            | Self::Formula { .. }
+            | Self::Camera(_)
+            | Self::Table(_)
+            | Self::Read { .. } => 2,
             _ => 1,
         }
     }
