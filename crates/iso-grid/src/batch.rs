@@ -56,20 +56,13 @@ impl PointBatch {
     }
 }
 
-/// Boxes end by end, and room for what a kernel says of them.
+/// Boxes end by end, and what a kernel says of them: output `k` over box `i` of n stands at `k·n + i`.
 #[derive(Debug, Default)]
 pub(crate) struct BoxBatch {
     lo: [Vec<f64>; 3],
     hi: [Vec<f64>; 3],
-    enclosures: EnclosureBatch,
-}
-
-/// What a kernel says of boxes: output `k` over box `i` of n stands at `k·n + i`.
-#[derive(Debug, Default)]
-pub(crate) struct EnclosureBatch {
-    boxes: usize,
-    lo: Vec<f64>,
-    hi: Vec<f64>,
+    found_lo: Vec<f64>,
+    found_hi: Vec<f64>,
     decoration: Vec<Decoration>,
 }
 
@@ -90,42 +83,35 @@ impl BoxBatch {
         self.lo[0].len()
     }
 
-    /// All `outputs` of the kernel over all boxes.
-    pub(crate) fn evaluate(
-        &mut self,
-        kernel: &dyn BoxKernel,
-        scratch: &mut Scratch,
-        outputs: usize,
-    ) -> &EnclosureBatch {
-        let boxes = self.len();
-        let Self { lo, hi, enclosures } = self;
-        enclosures.boxes = boxes;
-        enclosures.lo.resize(outputs * boxes, f64::NAN);
-        enclosures.hi.resize(outputs * boxes, f64::NAN);
-        enclosures.decoration.resize(outputs * boxes, Decoration::Trivial);
-        if boxes > 0 {
-            kernel.evaluate(
-                scratch,
-                Boxes { lo: lo.each_ref().map(Vec::as_slice), hi: hi.each_ref().map(Vec::as_slice) },
-                Enclosures {
-                    lo: &mut enclosures.lo,
-                    hi: &mut enclosures.hi,
-                    decoration: &mut enclosures.decoration,
-                },
-            );
+    /// Encloses all `outputs` of the kernel over all boxes.
+    pub(crate) fn evaluate(&mut self, kernel: &dyn BoxKernel, scratch: &mut Scratch, outputs: usize) {
+        let room = outputs * self.len();
+        self.found_lo.resize(room, f64::NAN);
+        self.found_hi.resize(room, f64::NAN);
+        self.decoration.resize(room, Decoration::Trivial);
+        if room > 0 {
+            let boxes = Boxes {
+                lo: self.lo.each_ref().map(Vec::as_slice),
+                hi: self.hi.each_ref().map(Vec::as_slice),
+            };
+            let enclosures = Enclosures {
+                lo: &mut self.found_lo,
+                hi: &mut self.found_hi,
+                decoration: &mut self.decoration,
+            };
+            kernel.evaluate(scratch, boxes, enclosures);
         }
-        enclosures
     }
-}
 
-impl EnclosureBatch {
+    /// What was found for an output over a box.
     pub(crate) fn interval(&self, output: usize, number: usize) -> Interval {
-        let place = output * self.boxes + number;
-        Interval { lo: self.lo[place], hi: self.hi[place] }
+        let place = output * self.len() + number;
+        Interval { lo: self.found_lo[place], hi: self.found_hi[place] }
     }
 
+    /// The same with its decoration.
     pub(crate) fn decorated(&self, output: usize, number: usize) -> Decorated {
-        let decoration = self.decoration[output * self.boxes + number];
+        let decoration = self.decoration[output * self.len() + number];
         Decorated { interval: self.interval(output, number), decoration }
     }
 }

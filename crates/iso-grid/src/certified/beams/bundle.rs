@@ -1,10 +1,11 @@
 //! The rays of a tile as one bundle, and the beams that it is cut into.
 
 use glam::DVec3;
+use iso_expr::Interval;
 use iso_expr::interval::{round_down, round_up};
 
 use super::area::Area;
-use crate::{Ray, Span};
+use crate::{Ray, Region, Span};
 
 /// Components beyond this size are left to rays one by one: below it nothing here overflows.
 const LARGEST: f64 = 1e100;
@@ -184,6 +185,25 @@ impl Beam {
             let (way_lo, way_hi) = ((start * d_lo).min(end * d_lo), (start * d_hi).max(end * d_hi));
             Span { start: round_down(o_lo + round_down(way_lo)), end: round_up(o_hi + round_up(way_hi)) }
         })
+    }
+
+    /// A stretch, from 0 on, that holds the part of every ray in the region, and ends before it starts when all miss it.
+    /// `None` when the beam is so wide that the faces of the region do not bound it.
+    pub(super) fn passage(&self, region: &Region) -> Option<Span> {
+        let mut passage = Span { start: 0.0, end: f64::INFINITY };
+        for axis in 0..3 {
+            let around = |spread: &Spread| {
+                let radius = spread.radius[axis];
+                Interval::point(spread.middle[axis]).plus(Interval { lo: -radius, hi: radius })
+            };
+            let directions = around(&self.directions);
+            if !directions.contains_zero() {
+                let faces = Interval { lo: region.min()[axis], hi: region.max()[axis] };
+                let t = faces.minus(around(&self.origins)).over(directions);
+                passage = Span { start: passage.start.max(t.lo), end: passage.end.min(t.hi) };
+            }
+        }
+        passage.end.is_finite().then_some(passage)
     }
 
     /// How long a stretch of the beam from `span.start` to `span.end` is, and how wide, in units of space.

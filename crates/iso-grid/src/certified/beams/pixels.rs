@@ -4,9 +4,9 @@ use glam::DVec3;
 use iso_expr::Interval;
 use iso_expr::interval::{round_down, round_up};
 
-use super::bundle::Beam;
 use super::form::Form;
-use super::subdivision::Subdivision;
+use super::subdivision::{Part, Subdivision};
+use crate::certified::clip::Clip;
 use crate::{Hit, Outcome, Ray, Span, Workspace};
 
 /// How many steps towards a root are taken at most, and then how many proofs are tried.
@@ -21,7 +21,6 @@ const ROUNDINGS: f64 = 2.0;
 struct Pixel {
     /// Which ray of the tile.
     place: usize,
-    ray: Ray,
     /// Where F is known to be monotone inside the region.
     reach: Span,
     /// Where a root is looked for: everything before it is free of roots.
@@ -37,41 +36,44 @@ struct Pixel {
 }
 
 impl Subdivision<'_> {
-    /// Ends or goes on with each ray of a beam by its root in `stretch`.
-    pub(super) fn follow_each(&mut self, beam: &Beam, stretch: Span, form: &Form) {
-        let mut pixels = self.pixels(beam, stretch, form);
+    /// Ends or goes on with each ray of a part by its root there.
+    pub(super) fn follow_each(&mut self, part: &Part, form: &Form) {
+        let mut pixels = self.pixels(part, form);
         self.approach(&mut pixels, form);
         self.prove(pixels, form);
     }
 
-    fn pixels(&mut self, beam: &Beam, stretch: Span, form: &Form) -> Vec<Pixel> {
+    /// The rays of a part that are still followed. Those that may have a root so near to a face of the region that no
+    /// point inside is known are searched each for its own.
+    fn pixels(&mut self, part: &Part, form: &Form) -> Vec<Pixel> {
+        let Part { beam, stretch, is_inside, .. } = part;
         let mut pixels = Vec::with_capacity(beam.area.width * beam.area.height);
         for row in beam.area.rows() {
             for column in beam.area.columns() {
                 let place = row * self.bundle.area.width + column;
-                let Some(clip) = self.clips[place] else { continue };
                 if !self.open[place] {
                     continue;
                 }
-                let (outer, inner) = (clip.outer, clip.inner);
-                let wanted = Span { start: stretch.start.max(outer.start), end: stretch.end.min(outer.end) };
-                let reach =
-                    Span { start: form.reach.start.max(inner.start), end: form.reach.end.min(inner.end) };
+                let (mut wanted, mut reach) = (*stretch, form.reach);
+                if !is_inside {
+                    let clip = Clip::new(&self.certified.region, &self.bundle.rays[place]);
+                    let Some(Clip { outer, inner }) = clip else { continue };
+                    wanted = common(wanted, outer);
+                    reach = common(reach, inner);
+                }
                 if wanted.start > wanted.end {
                     continue;
                 }
-                let (across, along) = beam.area.offset(column, row);
-                let t = form.estimate(across, along).max(reach.start).min(reach.end);
                 if reach.start > reach.end {
-                    self.search_one(place, stretch);
+                    self.search_one(place, wanted);
                     continue;
                 }
+                let (across, along) = beam.area.offset(column, row);
                 pixels.push(Pixel {
                     place,
-                    ray: self.bundle.rays[place],
                     reach,
                     wanted,
-                    t,
+                    t: form.estimate(across, along).max(reach.start).min(reach.end),
                     value: f64::NAN,
                     step: f64::NAN,
                     slope: form.slope.middle,
@@ -95,7 +97,7 @@ impl Subdivision<'_> {
             points.clear();
             for number in &moving {
                 let pixel = &pixels[*number];
-                points.push(pixel.ray.at(pixel.t));
+                points.push(self.bundle.rays[pixel.place].at(pixel.t));
             }
             counters.trace_evaluations += moving.len() as u64;
             let values = points.evaluate(&*self.certified.value_batch, scratch, 1);
@@ -131,14 +133,14 @@ impl Subdivision<'_> {
             let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
             boxes.clear();
             for pixel in &pixels {
-                let (lo, hi) = around(&pixel.ray, pixel.t);
+                let (lo, hi) = around(&self.bundle.rays[pixel.place], pixel.t);
                 boxes.push(lo, hi);
             }
             counters.box_evaluations += pixels.len() as u64;
-            let values = boxes.evaluate(&*self.certified.kernels.values, scratch, 1);
+            boxes.evaluate(&*self.certified.kernels.values, scratch, 1);
             let mut number = 0;
             pixels.retain_mut(|pixel| {
-                let value = values.interval(0, number);
+                let value = boxes.interval(0, number);
                 number += 1;
                 match pixel.narrow(value, slopes, self.certified.accuracy) {
                     Verdict::Free => false,
@@ -187,6 +189,11 @@ impl Pixel {
         self.t = root.midpoint().max(self.reach.start).min(self.reach.end);
         Verdict::Open
     }
+}
+
+/// What is in both; it ends before it starts when nothing is.
+fn common(a: Span, b: Span) -> Span {
+    Span { start: a.start.max(b.start), end: a.end.min(b.end) }
 }
 
 /// A box around the point of a ray at `t`.

@@ -1,7 +1,8 @@
 //! The subdivision of a tile into beams and of beams into stretches.
 
+use std::rc::Rc;
+
 use glam::DVec3;
-use iso_expr::{Decorated, Interval};
 
 use super::area::Area;
 use super::bundle::{Beam, Bundle};
@@ -15,17 +16,18 @@ use crate::{Outcome, Region, Span, Workspace};
 /// Into how many stretches a beam is cut at most, and so how many boxes a kernel is given at once.
 const SLICES: usize = 8;
 
-/// Beams of so many columns and rows are not cut further.
+/// A stretch is cut, and not the beam, when it is longer than this many times the beam's width; and then into stretches
+/// about so long.
+const LONG: f64 = 2.0;
+
+/// Beams of so many columns and rows are not cut further, and left to their rays where F is not monotone.
 const SMALLEST: usize = 2;
 
 /// Beams of so many columns and rows are not cut just since not all of their rays have a root.
-const SMALL: usize = 8;
-
-/// Stretches of a smallest beam that are shorter than this part of its width are left to its rays.
-const SHORTEST: f64 = 0.5;
+const SMALL: usize = 4;
 
 /// How uneven the slope of F may be over a beam whose rays are followed each for its own.
-const UNEVEN: f64 = 0.3;
+const UNEVEN: f64 = 0.6;
 
 /// By how much of their length stretches overlap, so that a root near an end lies well inside one of them.
 const OVERLAP: f64 = 1.0 / 16.0;
@@ -36,32 +38,38 @@ const LEAST_OVERLAP: f64 = 1.0 / (1u64 << 30) as f64;
 const WORK_LIMIT: u64 = 64;
 
 /// A stretch of a beam that may hold roots.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub(super) struct Part {
-    pub(super) beam: Beam,
+    pub(super) beam: Rc<Beam>,
     pub(super) stretch: Span,
     form: Option<Form>,
+    /// Whether all of it lies in the region, and a little more at both ends too.
+    pub(super) is_inside: bool,
 }
 
 /// A stretch of a beam, and a box around its part in the region.
 struct Slab {
-    beam: Beam,
+    beam: Rc<Beam>,
     stretch: Span,
     /// The stretch and a little more at both ends.
     reach: Span,
     lo: DVec3,
     hi: DVec3,
+    is_inside: bool,
 }
 
 impl Slab {
     /// `None` when it lies outside the region.
-    fn new(beam: Beam, stretch: Span, least_overlap: f64, region: &Region) -> Option<Self> {
+    fn new(beam: &Rc<Beam>, stretch: Span, least_overlap: f64, region: &Region) -> Option<Self> {
         let overlap = (OVERLAP * (stretch.end - stretch.start)).max(least_overlap);
         let reach = Span { start: (stretch.start - overlap).max(0.0), end: stretch.end + overlap };
         let bounds = beam.bounds(reach);
-        let lo = DVec3::from_array(bounds.map(|axis| axis.start)).max(region.min());
-        let hi = DVec3::from_array(bounds.map(|axis| axis.end)).min(region.max());
-        lo.cmple(hi).all().then_some(Self { beam, stretch, reach, lo, hi })
+        let (start, end) = (bounds.map(|axis| axis.start), bounds.map(|axis| axis.end));
+        let (start, end) = (DVec3::from_array(start), DVec3::from_array(end));
+        let (lo, hi) = (start.max(region.min()), end.min(region.max()));
+        let is_inside = lo == start && hi == end;
+        let beam = Rc::clone(beam);
+        lo.cmple(hi).all().then_some(Self { beam, stretch, reach, lo, hi, is_inside })
     }
 
     /// A point of the box, in the middle of the beam where that is in the region.
@@ -85,8 +93,6 @@ pub(in crate::certified) struct Subdivision<'a> {
     pub(super) certified: &'a Certified,
     pub(super) workspace: &'a mut Workspace,
     pub(super) bundle: &'a Bundle<'a>,
-    /// Of each ray; those that miss the region have none.
-    pub(super) clips: Vec<Option<Clip>>,
     pub(super) outcomes: &'a mut [Outcome],
     /// Whether each ray's first root is still looked for.
     pub(super) open: Vec<bool>,
@@ -105,35 +111,29 @@ impl<'a> Subdivision<'a> {
         bundle: &'a Bundle<'a>,
         outcomes: &'a mut [Outcome],
     ) -> Self {
-        let clips: Vec<Option<Clip>> =
-            bundle.rays.iter().map(|ray| Clip::new(&certified.region, ray)).collect();
-        let open: Vec<bool> = clips.iter().map(Option::is_some).collect();
-        workspace.counters.rays += open.len() as u64;
-        workspace.counters.rays_in_region += open.iter().filter(|is_open| **is_open).count() as u64;
+        let rays = bundle.rays;
+        let region = &certified.region;
+        workspace.counters.rays += rays.len() as u64;
+        workspace.counters.rays_in_region += rays.iter().filter_map(|ray| region.clip(ray)).count() as u64;
         outcomes.fill(Outcome::Miss);
-        let work_left = WORK_LIMIT * open.len() as u64;
         Self {
             certified,
             workspace,
             bundle,
-            clips,
             outcomes,
-            open,
+            open: vec![true; rays.len()],
             ahead: Vec::new(),
-            work_left,
+            work_left: WORK_LIMIT * rays.len() as u64,
             least_overlap: 0.0,
         }
     }
 
     /// Says of every ray how its search ends.
     pub(in crate::certified) fn run(mut self) {
-        let spans = self.clips.iter().flatten().map(|clip| clip.outer);
-        let Some(all) = spans.reduce(|a, b| Span { start: a.start.min(b.start), end: a.end.max(b.end) })
-        else {
-            return;
-        };
-        self.least_overlap = LEAST_OVERLAP * all.end;
-        self.ahead.push(Part { beam: self.bundle.beam(self.bundle.area), stretch: all, form: None });
+        let beam = Rc::new(self.bundle.beam(self.bundle.area));
+        let Some(stretch) = self.passage(&beam) else { return };
+        self.least_overlap = LEAST_OVERLAP * stretch.end;
+        self.ahead.push(Part { beam, stretch, form: None, is_inside: false });
         while let Some(part) = self.ahead.pop() {
             if !self.is_open(part.beam.area) {
                 continue;
@@ -146,6 +146,16 @@ impl<'a> Subdivision<'a> {
         }
     }
 
+    /// A stretch that holds all of the tile's rays inside the region; `None` when they miss it.
+    fn passage(&self, beam: &Beam) -> Option<Span> {
+        let region = &self.certified.region;
+        if let Some(passage) = beam.passage(region) {
+            return (passage.start <= passage.end).then_some(passage);
+        }
+        let spans = self.bundle.rays.iter().filter_map(|ray| Clip::new(region, ray)).map(|clip| clip.outer);
+        spans.reduce(|a, b| Span { start: a.start.min(b.start), end: a.end.max(b.end) })
+    }
+
     /// Whether some ray of `area` is still followed.
     fn is_open(&self, area: Area) -> bool {
         area.rows().any(|row| self.open[row * self.bundle.area.width..][area.columns()].contains(&true))
@@ -153,16 +163,15 @@ impl<'a> Subdivision<'a> {
 
     /// Cuts a stretch when it is longer than the beam is wide, or else the beam.
     fn divide(&mut self, part: Part) {
-        let Part { beam, stretch, .. } = part;
+        let Part { beam, stretch, .. } = &part;
+        let stretch = *stretch;
         let (length, width) = beam.extent(stretch);
         let is_smallest = beam.area.width.max(beam.area.height) <= SMALLEST;
-        if length > 2.0 * width && !(is_smallest && width == 0.0) {
-            let count = (length / width).ceil().min(SLICES as f64) as usize;
-            self.examine(&[beam], stretch, count);
+        if length > LONG * width && width > 0.0 {
+            let count = (length / (LONG * width)).ceil().min(SLICES as f64) as usize;
+            self.examine(std::slice::from_ref(beam), stretch, count);
         } else if !is_smallest {
-            self.examine(&self.quarters(&beam), stretch, 2);
-        } else if length > SHORTEST * width {
-            self.examine(&[beam], stretch, 4);
+            self.examine(&self.quarters(beam), stretch, 1);
         } else {
             self.search_each(&part);
         }
@@ -170,7 +179,7 @@ impl<'a> Subdivision<'a> {
 
     /// Goes on with a stretch on which F is monotone along every ray.
     fn follow(&mut self, part: Part, form: &Form) {
-        let Part { beam, stretch, .. } = part;
+        let Part { beam, stretch, .. } = &part;
         let roots = form.roots();
         let narrowed = Span { start: stretch.start.max(roots.lo), end: stretch.end.min(roots.hi) };
         if narrowed.start > narrowed.end {
@@ -179,59 +188,61 @@ impl<'a> Subdivision<'a> {
         let length = |span: Span| span.end - span.start;
         let is_small = beam.area.width.max(beam.area.height) <= SMALL;
         let is_even = form.unevenness() < UNEVEN;
-        if is_even && (is_small || corners_hit(&beam, form, narrowed)) {
-            self.follow_each(&beam, narrowed, form);
+        if is_even && (is_small || corners_hit(beam, form, narrowed)) {
+            self.follow_each(&Part { stretch: narrowed, ..part }, form);
         } else if !is_small {
-            self.examine(&self.quarters(&beam), narrowed, 1);
-        } else if length(narrowed) < 0.5 * length(stretch) {
-            self.examine(&[beam], narrowed, 1);
+            self.examine(&self.quarters(beam), narrowed, 1);
+        } else if length(narrowed) < 0.5 * length(*stretch) {
+            self.examine(std::slice::from_ref(beam), narrowed, 1);
         } else {
             self.divide(Part { stretch: narrowed, ..part });
         }
     }
 
-    fn quarters(&self, beam: &Beam) -> Vec<Beam> {
-        beam.area.quarters().map(|area| self.bundle.beam(area)).collect()
+    fn quarters(&self, beam: &Beam) -> Vec<Rc<Beam>> {
+        beam.area.quarters().map(|area| Rc::new(self.bundle.beam(area))).collect()
     }
 
     /// Encloses F over all beams, each cut into `count` stretches, and keeps the stretches that may hold roots.
-    fn examine(&mut self, beams: &[Beam], stretch: Span, count: usize) {
+    fn examine(&mut self, beams: &[Rc<Beam>], stretch: Span, count: usize) {
         let slabs: Vec<Slab> = beams
             .iter()
-            .flat_map(|beam| slices(stretch, count).rev().map(|stretch| (*beam, stretch)))
+            .flat_map(|beam| slices(stretch, count).rev().map(move |stretch| (beam, stretch)))
             .filter_map(|(beam, stretch)| {
                 Slab::new(beam, stretch, self.least_overlap, &self.certified.region)
             })
             .collect();
-        let boxes = 2 * slabs.len() as u64;
-        self.work_left = self.work_left.saturating_sub(boxes);
-        self.workspace.counters.box_evaluations += boxes;
-        let (courses, values) = self.enclose(&slabs);
-        for ((slab, course), value) in slabs.into_iter().zip(courses).zip(values) {
-            if free_of_zero(course[0].interval) {
+        self.enclose(&slabs);
+        let Workspace { boxes, centers, .. } = &*self.workspace;
+        for (number, slab) in slabs.into_iter().enumerate() {
+            if free_of_zero(boxes.interval(0, number)) {
                 continue;
             }
-            let form = Form::new(&slab.beam, slab.reach, slab.center(), value, course);
-            if form.is_none_or(|form| !form.excludes_zero()) {
-                self.ahead.push(Part { beam: slab.beam, stretch: slab.stretch, form });
+            let course = [0, 1, 2, 3].map(|output| boxes.decorated(output, number));
+            let form = Form::new(&slab.beam, slab.reach, slab.center(), centers.interval(0, number), course);
+            if form.as_ref().is_none_or(|form| !form.excludes_zero()) {
+                let Slab { beam, stretch, is_inside, .. } = slab;
+                self.ahead.push(Part { beam, stretch, form, is_inside });
             }
         }
     }
 
     /// Encloses F and its derivatives over each slab, and F at its center.
-    fn enclose(&mut self, slabs: &[Slab]) -> (Vec<[Decorated; 4]>, Vec<Interval>) {
-        let Workspace { boxes, scratch, .. } = &mut *self.workspace;
+    fn enclose(&mut self, slabs: &[Slab]) {
+        let Workspace { boxes, centers, scratch, counters, .. } = &mut *self.workspace;
         let kernels = &self.certified.kernels;
         boxes.clear();
-        slabs.iter().for_each(|slab| boxes.push(slab.lo, slab.hi));
-        let found = boxes.evaluate(&*kernels.gradients, scratch, 4);
-        let courses = (0..slabs.len())
-            .map(|number| [0, 1, 2, 3].map(|output| found.decorated(output, number)))
-            .collect();
-        boxes.clear();
-        slabs.iter().map(Slab::center).for_each(|center| boxes.push(center, center));
-        let found = boxes.evaluate(&*kernels.values, scratch, 1);
-        (courses, (0..slabs.len()).map(|number| found.interval(0, number)).collect())
+        centers.clear();
+        for slab in slabs {
+            let center = slab.center();
+            boxes.push(slab.lo, slab.hi);
+            centers.push(center, center);
+        }
+        boxes.evaluate(&*kernels.gradients, scratch, 4);
+        centers.evaluate(&*kernels.values, scratch, 1);
+        let enclosed = 2 * slabs.len() as u64;
+        counters.box_evaluations += enclosed;
+        self.work_left = self.work_left.saturating_sub(enclosed);
     }
 
     /// Leaves a part to the search along single rays.
@@ -248,13 +259,13 @@ impl<'a> Subdivision<'a> {
 
     /// Searches a stretch of one ray.
     pub(super) fn search_one(&mut self, place: usize, stretch: Span) {
-        let Some(clip) = self.clips[place] else { return };
-        let Clip { outer, .. } = clip;
+        let ray = self.bundle.rays[place];
+        let Some(clip) = Clip::new(&self.certified.region, &ray) else { return };
+        let outer = clip.outer;
         let stretch = Span { start: stretch.start.max(outer.start), end: stretch.end.min(outer.end) };
         if stretch.start > stretch.end {
             return;
         }
-        let ray = self.bundle.rays[place];
         let outcome = self.certified.search(self.workspace, ray, clip, (Cell::SMALLEST, stretch));
         if outcome != Outcome::Miss {
             self.end(place, outcome);
