@@ -1,4 +1,5 @@
-//! The raw flags of the command line, as clap reads them. Requests are made from them in [`crate::request`].
+//! The raw flags of the command line, as clap reads them. Commands check them before they compute
+//! anything ([`crate::commands`]).
 
 mod bench;
 mod camera;
