@@ -78,3 +78,66 @@ fn is_flat(stretch: Span, course: Course, at_start: Interval, at_end: Interval) 
     let rounding = at_start.width().max(at_end.width());
     rounding.is_finite() && bound <= ROUNDINGS * rounding
 }
+
+#[cfg(test)]
+mod tests {
+    use iso_expr::Decorated;
+
+    use super::*;
+
+    fn interval(lo: f64, hi: f64) -> Interval {
+        Interval::new(lo, hi).unwrap()
+    }
+
+    fn course(value: Interval, slope: Interval) -> Course {
+        let continuous = |interval| Decorated { interval, decoration: Decoration::Common };
+        Course { value: continuous(value), slope: continuous(slope) }
+    }
+
+    const STRETCH: Span = Span { start: 1.0, end: 2.0 };
+
+    #[test]
+    fn a_stretch_without_zero_is_free() {
+        let course = course(interval(0.1, 3.0), interval(-1.0, 1.0));
+        assert_eq!(classify(STRETCH, course, interval(1.0, 1.0), interval(1.0, 1.0)), None);
+    }
+
+    #[test]
+    fn a_slope_too_flat_to_reach_zero_leaves_a_stretch_free() {
+        // From 1 at both ends, zero is 1.25 away; the ends are 1 apart.
+        let course = course(interval(-1.0, 3.0), interval(-0.8, 0.8));
+        assert_eq!(classify(STRETCH, course, interval(1.0, 1.0), interval(1.0, 1.0)), None);
+    }
+
+    #[test]
+    fn a_change_of_sign_with_a_slope_is_a_crossing() {
+        let course = course(interval(-2.0, 2.0), interval(1.5, 4.0));
+        let Some((rest, Finding::Crossing)) =
+            classify(STRETCH, course, interval(-1.0, -1.0), interval(1.0, 1.0))
+        else {
+            panic!("no crossing");
+        };
+        assert!((rest.start - 1.25).abs() < 1e-15 && (rest.end - 1.75).abs() < 1e-15, "{rest:?}");
+    }
+
+    #[test]
+    fn a_change_of_sign_over_a_pole_is_no_crossing() {
+        let mut course = course(Interval::ENTIRE, Interval::ENTIRE);
+        course.value.decoration = Decoration::Trivial;
+        let found = classify(STRETCH, course, interval(-1.0, -1.0), interval(1.0, 1.0));
+        assert_eq!(found, Some((STRETCH, Finding::Open)));
+    }
+
+    #[test]
+    fn zero_all_over_is_a_plateau() {
+        let zero = Interval::point(0.0);
+        assert_eq!(classify(STRETCH, course(zero, zero), zero, zero), Some((STRETCH, Finding::Plateau)));
+    }
+
+    #[test]
+    fn values_lost_in_rounding_are_flat() {
+        let rounding = interval(-1e-16, 1e-16);
+        let found = classify(STRETCH, course(interval(-1.0, 1.0), rounding), rounding, rounding);
+        assert_eq!(found, Some((STRETCH, Finding::Flat)));
+    }
+}

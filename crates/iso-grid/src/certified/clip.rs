@@ -49,3 +49,46 @@ fn crossing(face: f64, origin: f64, direction: f64) -> Span {
     let (a, b) = (round_down(distance) / direction, round_up(distance) / direction);
     Span { start: round_down(a.min(b)), end: round_up(a.max(b)) }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    fn clip(origin: [f64; 3], direction: [f64; 3]) -> Option<Clip> {
+        let region = Region::new(DVec3::splat(-1.0), DVec3::splat(1.0)).unwrap();
+        Clip::new(&region, &Ray { origin: origin.into(), direction: direction.into() })
+    }
+
+    #[test]
+    fn ends_are_enclosed() {
+        // From −2 at 0.7 a second, the box is entered at 1/0.7 and left at 3/0.7, which are no doubles.
+        let Clip { outer, inner } = clip([-2.0, 0.1, 0.2], [0.7, 0.0, 0.0]).unwrap();
+        for (end, quotient) in [(outer.start, 1.0 / 0.7), (inner.start, 1.0 / 0.7), (outer.end, 3.0 / 0.7)] {
+            assert!((end - quotient).abs() < 1e-14, "{end} is not {quotient}");
+        }
+        assert!(outer.start < inner.start && inner.end < outer.end);
+    }
+
+    #[test]
+    fn a_ray_begins_at_its_origin() {
+        let Clip { outer, inner } = clip([0.5, 0.0, 0.0], [1.0, 0.0, 0.0]).unwrap();
+        assert_eq!((outer.start, inner.start), (0.0, 0.0));
+        assert!(inner.end <= 0.5 && 0.5 <= outer.end);
+    }
+
+    #[test]
+    fn rays_past_the_region_miss_it() {
+        assert_eq!(clip([-2.0, 1.1, 0.0], [1.0, 0.0, 0.0]), None);
+        assert_eq!(clip([2.0, 0.0, 0.0], [1.0, 0.0, 0.0]), None);
+        assert_eq!(clip([-3.0, 0.0, 0.0], [1.0, 1.0, 0.0]), None);
+        assert_eq!(clip([0.0; 3], [0.0; 3]), None);
+        assert_eq!(clip([f64::NAN, 0.0, 0.0], [1.0, 0.0, 0.0]), None);
+    }
+
+    #[test]
+    fn a_ray_along_a_face_is_in_the_region() {
+        assert!(clip([-2.0, 1.0, 0.0], [1.0, 0.0, 0.0]).is_some());
+    }
+}
