@@ -19,7 +19,7 @@ const PARTS: usize = 4;
 const CUTS: [f64; PARTS - 1] = [0.2402, 0.4883, 0.7539];
 
 /// How many boxes may be enclosed along one ray before the search gives up.
-const WORK_LIMIT: u64 = 1 << 14;
+const WORK_LIMIT: u64 = 1 << 12;
 
 /// How many pieces of F around its poles and jumps are looked at before the search goes on without them.
 const PIECES: usize = 32;
