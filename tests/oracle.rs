@@ -48,6 +48,22 @@ fn native_code_proves_what_the_oracle_says() {
     compare(engine, trace_pictures);
 }
 
+#[test]
+fn both_engines_say_the_same_of_tiles() {
+    let jit: Arc<dyn Engine> = Arc::new(Jit::new().expect("this machine is one that code is made for"));
+    for scene in scenes::all() {
+        let rays: Vec<Ray> = scene.verdicts().iter().map(|verdict| verdict.ray).collect();
+        let outcomes = [Arc::new(Interpreter) as Arc<dyn Engine>, Arc::clone(&jit)].map(|engine| {
+            let surface = scene.surface(engine);
+            let tracer = Certified::new(&surface, scene.region()).expect("the scenes compile");
+            let mut outcomes = vec![Outcome::Miss; rays.len()];
+            trace_pictures(&tracer, &mut Workspace::default(), &rays, &mut outcomes);
+            outcomes
+        });
+        assert_eq!(outcomes[0], outcomes[1], "{}", scene.name);
+    }
+}
+
 /// A way to trace all rays of a scene.
 type Trace = fn(&Certified, &mut Workspace, &[Ray], &mut [Outcome]);
 

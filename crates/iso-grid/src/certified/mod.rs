@@ -51,6 +51,8 @@ use walk::Walk;
 /// The ray is searched front to back. A stretch of it is discarded when the enclosure of F excludes zero, over the
 /// stretch as a whole, by the slope from its ends, or piece by piece around poles and jumps. It is a crossing when F
 /// is monotone and changes sign, and then the interval Newton method encloses the root. Else it is cut into parts.
+///
+/// The rays of a tile share their proofs as far as they go: see [`Tracer::trace_tile`].
 pub struct Certified {
     kernels: Kernels,
     value_batch: Arc<dyn BatchKernel>,

@@ -30,6 +30,8 @@ struct Pixel {
     /// F at the last place, and how far that is from `t`.
     value: f64,
     step: f64,
+    /// The part that the last step was of the one before.
+    rate: f64,
     slope: f64,
     /// Holds the root, if there is one in `reach`.
     root: Interval,
@@ -76,6 +78,7 @@ impl Subdivision<'_> {
                     t: form.estimate(across, along).max(reach.start).min(reach.end),
                     value: f64::NAN,
                     step: f64::NAN,
+                    rate: 1.0,
                     slope: form.slope.middle,
                     root: Interval::ENTIRE,
                 });
@@ -101,24 +104,12 @@ impl Subdivision<'_> {
             }
             counters.trace_evaluations += moving.len() as u64;
             let values = points.evaluate(&*self.certified.value_batch, scratch, 1);
-            let accuracy = 0.25 * self.certified.accuracy;
-            let mut place = 0;
+            let mut values = values.iter();
             moving.retain(|number| {
                 let pixel = &mut pixels[*number];
-                let value = values[place];
-                place += 1;
-                let secant = (value - pixel.value) / pixel.step;
-                if secant.is_finite() {
-                    pixel.slope = secant.max(slopes.lo).min(slopes.hi);
-                }
-                let next = (pixel.t - value / pixel.slope).max(pixel.reach.start).min(pixel.reach.end);
-                let step = next - pixel.t;
-                let rate = if pixel.step.is_nan() { unevenness } else { (step / pixel.step).abs() };
-                if !next.is_finite() {
-                    return false;
-                }
-                (pixel.t, pixel.value, pixel.step) = (next, value, step);
-                step.abs() * rate * unevenness > accuracy * next.max(1.0)
+                let error = pixel.step(*values.next().expect("a value for each point"), slopes, unevenness);
+                // The proof multiplies the error by the unevenness.
+                error * unevenness > 0.25 * self.certified.accuracy * pixel.t.max(1.0)
             });
         }
     }
@@ -170,6 +161,26 @@ enum Verdict {
 }
 
 impl Pixel {
+    /// One step of the secant method, where `value` is F at `t`. Returns about how far the root may still be; NaN where F is
+    /// not finite, which no step helps.
+    fn step(&mut self, value: f64, slopes: Interval, unevenness: f64) -> f64 {
+        let secant = (value - self.value) / self.step;
+        if secant.is_finite() {
+            self.slope = secant.max(slopes.lo).min(slopes.hi);
+        }
+        let next = self.t - value / self.slope;
+        if !next.is_finite() {
+            return f64::NAN;
+        }
+        let next = next.max(self.reach.start).min(self.reach.end);
+        let step = next - self.t;
+        let rate = if self.step.is_nan() { unevenness } else { (step / self.step).abs() };
+        // Each error is a constant times the two before it, and each step about as long as the error before it.
+        let error = step.abs() * rate * self.rate;
+        (self.t, self.value, self.step, self.rate) = (next, value, step, rate);
+        error
+    }
+
     /// One step of the interval Newton method, where `value` encloses F at `t` and `slopes` its derivative in reach: all
     /// roots in reach lie in the result, and if that lies in reach itself, there is one.
     fn narrow(&mut self, value: Interval, slopes: Interval, accuracy: f64) -> Verdict {
