@@ -93,7 +93,8 @@ const INTRODUCTION: &str = "\
 
 Printed by `cargo run --release --example methods`. The rays are those of `testdata/oracle`, decided by an independent
 program in ball arithmetic (`tools/oracle`); rays that it leaves undecided are left out. `direct` samples as closely as
-`grid` does; `grid` and `octree` have 60 cells along each axis, the finest of the paper's grids. One thread.
+`grid` does; `grid` and `octree` have 60 cells along each axis, the finest of the paper's grids. One thread traces; `grid`
+and `octree` prepare their cells on all.
 
 - A *wrong* hit is one where there is no root.
 - A hit is *missed* when the method says that there is none, or finds a later one.
