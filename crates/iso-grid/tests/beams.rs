@@ -173,8 +173,9 @@ fn unrelated_rays_may_be_called_a_tile() {
             assert!(is_same(a, b) && agree(a, b), "{a:?}, alone {b:?}");
         }
     }
-    rays[5].origin.x = f64::NAN;
-    rays[6].direction.y = 1e200;
-    let outcomes = together(&tracer, &Tile { name: "not finite", rays: rays.clone(), width: 8 });
-    assert_eq!(outcomes, alone(&tracer, &rays));
+    for strange in [f64::NAN, f64::INFINITY, 1e200] {
+        rays[21].origin.x = strange;
+        let outcomes = together(&tracer, &Tile { name: "strange", rays: rays.clone(), width: 8 });
+        assert_eq!(outcomes, alone(&tracer, &rays), "{strange}");
+    }
 }

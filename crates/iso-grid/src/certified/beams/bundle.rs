@@ -34,6 +34,9 @@ impl<'a> Bundle<'a> {
         let area = Area { column: 0, row: 0, width, height };
         let corners = area.corners().map(|(column, row)| rays.get(row * width + column));
         let [Some(a), Some(b), Some(c), Some(d)] = corners else { return None };
+        if !rays.iter().all(|ray| ray.origin.is_finite() && ray.direction.is_finite()) {
+            return None;
+        }
         let corners = [a, b, c, d];
         let mut bundle = Self {
             rays,
