@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use iso_expr::{BatchKernel, CompileError, Program};
 
-use crate::{Counters, Outcome, Ray, Region, Surface, Tracer, Workspace};
+use crate::{Counters, Outcome, Ray, Region, Span, Surface, Tracer, Workspace};
 use beams::{Bundle, Subdivision};
 use cells::{Cell, Cells};
 use clip::Clip;
@@ -27,7 +27,7 @@ use kernels::Kernels;
 use line::Line;
 use polynomial::Polynomial;
 pub(crate) use search::Ahead;
-use search::{Search, Way};
+use search::{Search, WORK_LIMIT, Way};
 pub(crate) use walk::Entry;
 use walk::Walk;
 
@@ -43,10 +43,10 @@ use walk::Walk;
 ///   possible root next to a jump, a pole or an edge of the domain, on a face of the region, or since too much
 ///   work was done along this ray.
 ///
-/// Where F is a polynomial, its Bernstein coefficients along the ray tell the search where to look. Elsewhere the region
-/// is a grid of cells, proven empty where they are when a ray first comes by; what is found out is kept, and
+/// The region is a grid of cells, proven empty where they are when a ray first comes by; what is found out is kept, and
 /// spares later rays the search through empty space. It depends on the surface alone, so that the outcome of a ray does
-/// not depend on others.
+/// not depend on others. Where F is a polynomial and a ray is hard, its Bernstein coefficients along the ray tell the
+/// search where to look.
 ///
 /// The ray is searched front to back. A stretch of it is discarded when the enclosure of F excludes zero, over the
 /// stretch as a whole, by the slope from its ends, or piece by piece around poles and jumps. It is a crossing when F
@@ -62,6 +62,9 @@ pub struct Certified {
     cells: Cells,
     accuracy: f64,
 }
+
+/// How many boxes an easy ray takes at most.
+const EASY: u64 = 128;
 
 impl Certified {
     /// The width, relative to t and to 1 where t is smaller, to which a root is enclosed unless asked otherwise.
@@ -94,27 +97,31 @@ impl Certified {
 
 impl Certified {
     /// How the search along a ray ends, if it begins with `entry`, a stretch in a cell, and goes no further.
+    ///
+    /// Most rays are decided soon, from cell to cell. Those that are not get a second chance where F is a polynomial: its
+    /// expansion along the ray takes longer than an easy ray does, but tells apart what boxes cannot.
     fn search(&self, workspace: &mut Workspace, ray: Ray, clip: Clip, entry: Entry) -> Outcome {
         let Workspace { scratch, counters, ahead, entries, expansion, .. } = workspace;
-        let line = Line { kernels: &self.kernels, scratch, ray, evaluations: 0 };
-        let way = match &self.polynomial {
-            Some(polynomial) => Way::Pieces(Isolation::new(polynomial, &line, entry.1, expansion)),
-            None => Way::Cells(Walk::new(&self.cells, ray, entry, entries)),
+        let mut search = Search {
+            line: Line { kernels: &self.kernels, scratch, ray, evaluations: 0 },
+            program: &self.program,
+            accuracy: self.accuracy,
+            clip,
+            way: Way::Cells(Walk::new(&self.cells, ray, entry, entries)),
+            budget: if self.polynomial.is_some() { EASY } else { WORK_LIMIT },
+            ahead,
         };
-        let mut search = Search { line, program: &self.program, accuracy: self.accuracy, clip, way, ahead };
-        let outcome = search.run();
-        counters.box_evaluations += search.line.evaluations;
-        match search.way {
-            Way::Cells(walk) => {
-                counters.box_evaluations += walk.evaluations;
-                counters.steps += walk.steps;
-            }
-            Way::Pieces(isolation) => {
-                counters.box_evaluations += 1;
-                counters.steps += isolation.judged;
-            }
+        let mut end = search.run();
+        if let (Err(rest), Some(polynomial)) = (end, &self.polynomial) {
+            search.way.tally(counters);
+            let rest = Span { end: entry.1.end, ..rest };
+            search.way = Way::Pieces(Isolation::new(polynomial, &search.line, rest, expansion));
+            search.budget = WORK_LIMIT;
+            end = search.run();
         }
-        outcome
+        search.way.tally(counters);
+        counters.box_evaluations += search.line.evaluations;
+        end.unwrap_or_else(Outcome::Undecided)
     }
 }
 

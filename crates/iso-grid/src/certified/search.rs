@@ -9,7 +9,7 @@ use super::isolate::Isolation;
 use super::line::Line;
 use super::side::side;
 use super::walk::Walk;
-use crate::{Hit, Outcome, Span};
+use crate::{Counters, Hit, Outcome, Span};
 
 /// Into how many parts an open stretch is cut.
 const PARTS: usize = 4;
@@ -19,7 +19,7 @@ const PARTS: usize = 4;
 const CUTS: [f64; PARTS - 1] = [0.2402, 0.4883, 0.7539];
 
 /// How many boxes may be enclosed along one ray before the search gives up.
-const WORK_LIMIT: u64 = 1 << 12;
+pub(super) const WORK_LIMIT: u64 = 1 << 12;
 
 /// How many pieces of F around its poles and jumps are looked at before the search goes on without them.
 const PIECES: usize = 32;
@@ -35,6 +35,8 @@ pub(super) struct Search<'a> {
     pub(super) accuracy: f64,
     pub(super) clip: Clip,
     pub(super) way: Way<'a>,
+    /// How many boxes may be enclosed.
+    pub(super) budget: u64,
     /// What lies ahead in the stretch of the way that is looked at, the nearest on top. Everything before it is free of
     /// roots, and so is all between.
     pub(super) ahead: &'a mut Vec<Ahead>,
@@ -48,6 +50,22 @@ pub(super) enum Way<'a> {
     Pieces(Isolation<'a>),
 }
 
+impl Way<'_> {
+    /// Counts the work that finding the stretches took.
+    pub(super) fn tally(&self, counters: &mut Counters) {
+        match self {
+            Self::Cells(walk) => {
+                counters.box_evaluations += walk.evaluations;
+                counters.steps += walk.steps;
+            }
+            Self::Pieces(isolation) => {
+                counters.box_evaluations += 1;
+                counters.steps += isolation.judged;
+            }
+        }
+    }
+}
+
 /// A stretch that may hold roots.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ahead {
@@ -56,12 +74,12 @@ pub(crate) struct Ahead {
 }
 
 impl Search<'_> {
-    /// How the search ends. Everything before the end is proven.
-    pub(super) fn run(&mut self) -> Outcome {
+    /// How the search ends, or what is left of the ray when the budget is spent. Everything before the end is proven.
+    pub(super) fn run(&mut self) -> Result<Outcome, Span> {
         self.ahead.clear();
         while let Some(Ahead { stretch, finding }) = self.next() {
-            if self.line.evaluations >= WORK_LIMIT {
-                return Outcome::Undecided(Span { start: stretch.start, end: self.clip.outer.end });
+            if self.line.evaluations >= self.budget {
+                return Err(Span { start: stretch.start, end: self.clip.outer.end });
             }
             let end = match finding {
                 Finding::Open if stretch.end - stretch.start > self.resolution(stretch) => {
@@ -73,10 +91,10 @@ impl Search<'_> {
                 Finding::Plateau => Some(Outcome::Touch(Hit { t: stretch.start, bracket: stretch })),
             };
             if let Some(outcome) = end {
-                return outcome;
+                return Ok(outcome);
             }
         }
-        Outcome::Miss
+        Ok(Outcome::Miss)
     }
 
     /// The nearest stretch that may hold roots.
