@@ -7,6 +7,6 @@ cd "$(dirname "$0")/.."
 
 cargo build --release
 iso() { target/release/iso "$@"; }
-grep -h '^iso render .* -o docs/' README.md docs/holes.md | while read -r command; do
+grep -h '^iso render .* -o docs/' README.md docs/certified.md | while read -r command; do
     eval "$command --size 480 --smooth 2 $*"
 done

@@ -80,7 +80,7 @@ fn the_number_of_threads_changes_no_bit() {
         one.depth.iter().map(|t| t.to_bits()).collect::<Vec<_>>(),
         three.depth.iter().map(|t| t.to_bits()).collect::<Vec<_>>()
     );
-    assert_eq!(one.counters, three.counters);
+    assert_eq!(one.counts, three.counts);
 }
 
 /// The picture is the right way up: the key light comes from the upper left.
