@@ -132,9 +132,9 @@ impl Found {
     }
 }
 
-/// An end of an enclosure; that of an empty one is NaN.
+/// An end of an enclosure; that of an empty one is NaN. Zeros lose their sign, which enclosures use for themselves.
 fn end(value: f64) -> String {
-    if value.is_nan() { "empty".to_owned() } else { digits(value) }
+    if value.is_nan() { "empty".to_owned() } else { digits(value + 0.0) }
 }
 
 /// The decoration's name in IEEE 1788.
