@@ -50,6 +50,37 @@ fn digits_read_back_to_the_same_float() {
     assert!(read[values.len()].is_nan() && read[values.len() + 1] == f64::INFINITY);
 }
 
+/// (x + 1)² − x² − 2x is 1 in exact arithmetic; at 2²⁷ + 1 its terms are too long for a double.
+#[test]
+fn errors_stand_beside_the_values_and_hold() {
+    let case = Case::new();
+    case.file("points.csv", "x,y,z\n0.5,0,0\n134217729,0,0\n-1e300,0,0\n");
+    for engine in ENGINES {
+        let arguments =
+            ["eval", "(x + 1)^2 - x^2 - 2x", "--points", "points.csv", "--error", "--engine", engine];
+        let table = case.run(&arguments).exits(0).stdout();
+        let mut lines = table.lines();
+        assert_eq!(lines.next(), Some("value,value_error,value_digits_lost"));
+        let rows: Vec<[f64; 3]> = lines
+            .map(|line| std::array::from_fn(|field| line.split(',').nth(field).unwrap().parse().unwrap()))
+            .collect();
+        for [value, error, _] in &rows[..2] {
+            assert!((value - 1.0).abs() <= *error, "{table}");
+        }
+        assert!(rows[0][2] < 1.5 && 15.0 < rows[1][2], "{table}");
+        assert!(rows[2][0].is_nan() && rows[2][1] == f64::INFINITY, "{table}");
+    }
+}
+
+#[test]
+fn errors_have_derivatives_too_but_no_boxes() {
+    let case = Case::new();
+    case.file("points.csv", "x,y,z\n3,0,0\n").file("boxes.csv", "x_lo,x_hi,y_lo,y_hi,z_lo,z_hi\n");
+    let run = case.run(&["eval", "x", "--points", "points.csv", "--gradient", "--error"]).exits(0);
+    assert!(run.stdout().ends_with("\n3,0,0.0,1,0,0.0,0,0,0.0,0,0,0.0\n"), "{}", run.stdout());
+    case.run(&["eval", "x", "--boxes", "boxes.csv", "--error"]).exits(2).mentions("--error");
+}
+
 #[test]
 fn enclosures_carry_decorations() {
     let case = Case::new();

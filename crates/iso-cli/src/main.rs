@@ -6,6 +6,8 @@
 mod camera;
 mod clock;
 mod commands;
+#[expect(dead_code, reason = "`iso stress` is about to use it")]
+mod comparison;
 mod engine;
 mod failure;
 mod flags;
@@ -15,6 +17,7 @@ mod output;
 mod pictures;
 mod progress;
 mod report;
+mod rounding;
 mod summary;
 mod table;
 mod values;

@@ -12,6 +12,7 @@ use crate::failure::Failure;
 use crate::flags::EvalFlags;
 use crate::formula::{Programs, understand};
 use crate::output::Destination;
+use crate::rounding::{Rounded, rounded};
 use crate::table::{self, Table, TableError, digits, write_row};
 
 /// Rows that are evaluated at a time.
@@ -25,11 +26,15 @@ pub(crate) fn run(flags: EvalFlags) -> Result<(), Failure> {
     let program = if flags.places.gradient { programs.value_and_gradient } else { programs.value };
     let engine = engine(flags.engine.engine)?;
     match (&flags.places.points, &flags.places.boxes) {
+        (Some(path), _) if flags.places.error => with_errors(engine, &program, path, &destination),
         (Some(path), _) => at_points(engine, &program, path, &destination),
         (None, Some(path)) => over_boxes(engine, &program, path, &destination),
         (None, None) => Err(Failure::usage("there is nowhere to evaluate", "give --points or --boxes")),
     }
 }
+
+/// The columns of values, as many as there are outputs.
+const VALUE_COLUMNS: [&str; 4] = ["value", "dx", "dy", "dz"];
 
 fn at_points(
     engine: Arc<dyn Engine>,
@@ -43,7 +48,7 @@ fn at_points(
     let outputs = program.outputs().len();
     let mut scratch = Scratch::default();
     destination.write(|writer| {
-        write_row(writer, &["value", "dx", "dy", "dz"][..outputs])?;
+        write_row(writer, &VALUE_COLUMNS[..outputs])?;
         let mut values = Vec::new();
         for ((x, y), z) in x.chunks(BATCH).zip(y.chunks(BATCH)).zip(z.chunks(BATCH)) {
             values.resize(outputs * x.len(), 0.0);
@@ -54,6 +59,40 @@ fn at_points(
         }
         Ok(())
     })
+}
+
+/// Values at points, each with the bound of its rounding error and the digits that it may have lost.
+fn with_errors(
+    engine: Arc<dyn Engine>,
+    program: &Program,
+    path: &Path,
+    destination: &Destination,
+) -> Result<(), Failure> {
+    let points = table::read(path, ["x", "y", "z"])?;
+    let (values, enclosures) = (engine.batch(program)?, engine.boxes(program)?);
+    let [x, y, z] = &points.columns;
+    let outputs = program.outputs().len();
+    let mut scratch = Scratch::default();
+    destination.write(|writer| {
+        let columns =
+            |name: &&str| [name.to_string(), format!("{name}_error"), format!("{name}_digits_lost")];
+        write_row(writer, VALUE_COLUMNS[..outputs].iter().flat_map(columns))?;
+        for ((x, y), z) in x.chunks(BATCH).zip(y.chunks(BATCH)).zip(z.chunks(BATCH)) {
+            let found = rounded(&*values, &*enclosures, &mut scratch, Points { x, y, z }, outputs);
+            for row in 0..x.len() {
+                let places = (0..outputs).map(|output| found[output * x.len() + row]);
+                write_row(writer, places.flat_map(Rounded::fields))?;
+            }
+        }
+        Ok(())
+    })
+}
+
+impl Rounded {
+    /// The value, the bound of its error, and the digits lost to a tenth, as a table has them.
+    fn fields(self) -> [String; 3] {
+        [digits(self.value), digits(self.error), format!("{:.1}", self.digits_lost()).to_lowercase()]
+    }
 }
 
 fn over_boxes(

@@ -37,6 +37,10 @@ pub(crate) struct PlacesFlags {
     #[arg(long)]
     pub(crate) gradient: bool,
 
+    /// Add to each value a bound of its rounding error, and how many digits it may have lost
+    #[arg(long, conflicts_with = "boxes")]
+    pub(crate) error: bool,
+
     /// The table of results [default: standard output]
     #[arg(short, long, value_name = "FILE.csv")]
     pub(crate) output: Option<PathBuf>,
@@ -46,8 +50,11 @@ const EXAMPLES: &str = "\
 Columns of the result: value (and dx,dy,dz) at points; lo,hi,decoration (and dx_lo,dx_hi,dx_decoration and so on) over boxes.
 The decoration says what is known of the formula on the box: com (defined, continuous, bounded), dac (defined, continuous),
 def (defined) or trv (nothing).
+With --error, each column v of a value is followed by v_error and v_digits_lost: the exact value is no further from v than v_error,
+so that as many of a double's 16 digits may be wrong. It is inf where no bound is known, and nan where the formula is undefined.
 
 Examples:
   iso eval 'sqrt(x^2 + y^2) - z' --points points.csv
   iso eval 'sqrt(x^2 + y^2) - z' --points points.csv --gradient -o values.csv
+  iso eval '(1 - cos(x))/x^2' --points points.csv --error
   iso eval '1/x + y z' --boxes boxes.csv";
