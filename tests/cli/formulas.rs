@@ -142,3 +142,33 @@ fn a_formula_that_cannot_be_read_exits_with_1() {
     render(&case, "@.", &[]).exits(2);
     assert!(case.names().is_empty());
 }
+
+#[test]
+fn a_model_is_taken_wherever_a_formula_is() {
+    let case = Case::new();
+    case.file("ball.vm", "# a ball\n_0 var-x\n_1 square _0\n_2 var-y\n_3 square _2\n_4 add _1 _3\n_5 var-z\n_6 square _5\n_7 add _4 _6\n_8 const 1\n_9 sub _7 _8\n");
+    case.file("points.csv", "x,y,z\n2,0,0\n");
+    render(&case, "ball.vm", &["-o", "model.png"]).exits(0).reports("");
+    render(&case, "@ball.vm", &["-o", "again.png"]).exits(0);
+    render(&case, "x^2 + y^2 + z^2 - 1", &["-o", "formula.png"]).exits(0);
+    assert_eq!(case.content("model.png"), case.content("formula.png"));
+    assert_eq!(case.content("again.png"), case.content("formula.png"));
+    case.run(&["eval", "ball.vm", "--points", "points.csv"]).exits(0).prints("value\n3\n");
+    let explained = case.run(&["explain", "ball.vm", "--section", "program"]).exits(0).stdout();
+    assert!(explained.starts_with("program: 6 operations"), "{explained}");
+}
+
+#[test]
+fn a_wrong_model_is_refused_with_the_place() {
+    let case = Case::new();
+    case.file("wrong.vm", "_0 var-x\n_1 add _0 _7\n")
+        .file("empty.vm", "\n# nothing\n")
+        .file("bytes.vm", b"a \xff");
+    render(&case, "wrong.vm", &[]).exits(2).mentions("`_7` is unknown").mentions("wrong.vm:2:11");
+    render(&case, "empty.vm", &[]).exits(2).mentions("one operation a line");
+    render(&case, "bytes.vm", &[]).exits(2).mentions("UTF-8");
+    render(&case, "absent.vm", &[]).exits(2).mentions("absent.vm");
+    case.file("x.vm", "_0 var-x\n");
+    render(&case, "x.vm", &["--set", "a=1"]).exits(2).mentions("no parameters");
+    assert_eq!(case.names(), ["bytes.vm", "empty.vm", "wrong.vm", "x.vm"]);
+}

@@ -21,16 +21,24 @@ pub(crate) struct Source {
     bytes: Vec<u8>,
 }
 
+/// The end of the names of files that hold models.
+const MODEL: &str = ".vm";
+
+/// A formula that was read.
+pub(crate) enum Text {
+    /// In the language of formulas.
+    Formula(Ast),
+    /// A model, one operation a line.
+    Model(Formula),
+}
+
 impl Source {
-    /// Takes the argument itself, or reads the file of `@file`, or standard input for `-`.
+    /// Takes the argument itself, or reads the file of `@file` or `model.vm`, or standard input for `-`.
     pub(crate) fn read(argument: &OsStr) -> Result<Self, Failure> {
         let (name, read) = match argument.as_encoded_bytes() {
             b"-" => ("standard input".to_owned(), read_standard_input()),
-            [b'@', ..] => {
-                let path = argument.to_string_lossy()[1..].to_owned();
-                let read = fs::read(&path);
-                (path, read)
-            }
+            [b'@', ..] => read_file(&argument.to_string_lossy()[1..]),
+            bytes if bytes.ends_with(MODEL.as_bytes()) => read_file(&argument.to_string_lossy()),
             bytes => ("formula".to_owned(), Ok(bytes.to_vec())),
         };
         match read {
@@ -39,16 +47,28 @@ impl Source {
         }
     }
 
-    /// The tree.
-    pub(crate) fn parse(&self) -> Result<Ast, Failure> {
-        iso_expr::decode(&self.bytes).and_then(Ast::parse).map_err(|error| self.wrong(error))
+    /// The tree, or the model when the name is that of one.
+    pub(crate) fn parse(&self) -> Result<Text, Failure> {
+        let is_model = self.name.ends_with(MODEL);
+        let text = iso_expr::decode(&self.bytes).and_then(|text| match is_model {
+            true => Formula::read_model(text).map(Text::Model),
+            false => Ast::parse(text).map(Text::Formula),
+        });
+        text.map_err(|error| self.wrong(error))
     }
 
-    /// The program of a tree of this source, with other values for some of its parameters.
-    pub(crate) fn lower(&self, ast: &Ast, settings: &[Setting]) -> Result<Formula, Failure> {
+    /// The program of a text of this source, with other values for some of its parameters.
+    pub(crate) fn lower(&self, text: &Text, settings: &[Setting]) -> Result<Formula, Failure> {
         let settings: Vec<(String, f64)> =
             settings.iter().map(|setting| (setting.name.clone(), setting.value)).collect();
-        ast.lower(&settings).map_err(|error| self.wrong(error))
+        match text {
+            Text::Formula(ast) => ast.lower(&settings).map_err(|error| self.wrong(error)),
+            Text::Model(formula) if settings.is_empty() => Ok(formula.clone()),
+            Text::Model(_) => Err(Failure::usage(
+                format!("{} is a model, which has no parameters", self.name),
+                "leave out --set",
+            )),
+        }
     }
 
     /// The text; what is not UTF-8 is replaced.
@@ -59,6 +79,11 @@ impl Source {
     fn wrong(&self, error: FormulaError) -> Failure {
         Failure::Formula { source_text: Box::new(self.clone()), error: Box::new(error) }
     }
+}
+
+/// The file's name and what is in it.
+fn read_file(path: &str) -> (String, io::Result<Vec<u8>>) {
+    (path.to_owned(), fs::read(path))
 }
 
 fn read_standard_input() -> io::Result<Vec<u8>> {

@@ -12,7 +12,7 @@ use serde_json::{Map, Value};
 use crate::clock::{milliseconds, timed};
 use crate::failure::Failure;
 use crate::flags::{ExplainFlags, KernelName, Section};
-use crate::formula::{Source, minus_level};
+use crate::formula::{Source, Text, minus_level};
 use crate::output::to_standard_output;
 
 /// Shows the stages of a formula.
@@ -69,17 +69,21 @@ impl Stage {
 
 fn stages(flags: &ExplainFlags) -> Result<Vec<(Section, Stage)>, Failure> {
     let source = Source::read(&flags.formula.formula)?;
-    let (ast, parse_time) = timed(|| source.parse());
-    let ast = ast?;
+    let (text, parse_time) = timed(|| source.parse());
+    let text = text?;
     let (program, lower_time) = timed(|| {
-        let formula = source.lower(&ast, &flags.formula.settings)?;
+        let formula = source.lower(&text, &flags.formula.settings)?;
         minus_level(&formula, flags.level.level)
     });
     let program = program?;
     let simplified = timed(|| program.simplified());
     let gradient = timed(|| simplified.0.with_gradient().simplified());
     let listing = Jit::new()?.listing(&simplified.0, kind(flags.sections.kernel))?;
-    let tree = ast.outline().to_string();
+    // A model has no tree: its lines are the program.
+    let tree = match &text {
+        Text::Formula(ast) => ast.outline().to_string(),
+        Text::Model(_) => String::new(),
+    };
     Ok(vec![
         (Section::Tree, Stage::new(tree.lines().count(), "lines", parse_time, tree)),
         (Section::Program, Stage::program(&(program, lower_time))),

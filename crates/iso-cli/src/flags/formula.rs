@@ -10,10 +10,11 @@ use crate::values::{self, Setting};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Formula")]
 pub(crate) struct FormulaFlags {
-    /// The formula; `@FILE` reads it from a file, `-` from standard input
+    /// The formula; `@FILE` reads it from a file, `-` from standard input, `FILE.vm` is a model
     ///
     /// An equation such as `x^2 + y^2 = z`, or an expression F that stands for F = C (see `--level`). Definitions may come
-    /// before it: `a := 2; r := sqrt(x^2 + y^2); r^a = z`. docs/formulas.md describes the whole language.
+    /// before it: `a := 2; r := sqrt(x^2 + y^2); r^a = z`. docs/formulas.md describes the whole language,
+    /// and the form of models, which have one operation a line.
     #[arg(value_name = "FORMULA", allow_hyphen_values = true)]
     pub(crate) formula: OsString,
 

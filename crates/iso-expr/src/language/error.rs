@@ -95,6 +95,24 @@ pub enum FormulaErrorKind {
         /// The number as it stands, shortened when long.
         number: String,
     },
+    /// A word of a model where a number should stand.
+    #[error("expected a number, but found `{found}`")]
+    NotANumber {
+        /// What stands there, shortened when long.
+        found: String,
+    },
+    /// A line of a model that names no operation.
+    #[error("the line of `{name}` has no operation")]
+    MissingOperation {
+        /// The line's name.
+        name: String,
+    },
+    /// An operation that models do not have.
+    #[error("the operation `{name}` is unknown")]
+    UnknownOperation {
+        /// The name.
+        name: String,
+    },
     /// A name that nothing has.
     #[error("the name `{name}` is unknown")]
     UnknownName {

@@ -3,6 +3,9 @@
 /// The longest text, in bytes.
 pub const LARGEST_TEXT: usize = 1 << 20;
 
+/// The longest text of a model, in bytes.
+pub const LARGEST_MODEL: usize = 8 << 20;
+
 /// How deep parentheses, calls, bars and root signs may stand inside each other.
 pub const DEEPEST_NESTING: usize = 256;
 

@@ -19,6 +19,11 @@ pub struct Formula {
 }
 
 impl Formula {
+    /// F as it is, without parameters.
+    pub(super) fn of_program(program: Program) -> Self {
+        Self { program, is_equation: false, parameters: Vec::new() }
+    }
+
     /// F, the program's one output. For an equation it is the left side less the right side.
     pub fn program(&self) -> &Program {
         &self.program

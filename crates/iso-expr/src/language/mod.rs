@@ -36,6 +36,7 @@ mod function;
 mod item;
 pub mod limits;
 mod lower;
+mod model;
 mod number;
 mod outline;
 mod parse;
