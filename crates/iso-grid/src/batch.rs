@@ -28,6 +28,10 @@ impl PointBatch {
         self.z.push(point.z);
     }
 
+    pub(crate) fn extend(&mut self, points: impl IntoIterator<Item = DVec3>) {
+        points.into_iter().for_each(|point| self.push(point));
+    }
+
     /// Adds the points of a ray at these places.
     pub(crate) fn push_along(&mut self, ray: &Ray, places: &[f64]) {
         let coordinates = [&mut self.x, &mut self.y, &mut self.z];

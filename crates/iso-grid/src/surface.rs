@@ -13,6 +13,7 @@ pub struct Surface {
     gradient_batch: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
     value_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     gradient_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
+    rounding_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
 }
 
 impl Surface {
@@ -30,6 +31,7 @@ impl Surface {
             gradient_batch: OnceLock::new(),
             value_boxes: OnceLock::new(),
             gradient_boxes: OnceLock::new(),
+            rounding_boxes: OnceLock::new(),
         }
     }
 
@@ -68,6 +70,14 @@ impl Surface {
     /// When the engine cannot compile it.
     pub fn gradient_enclosures(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
         compiled(&self.gradient_boxes, || self.engine.boxes(&self.value_and_gradient))
+    }
+
+    /// F − C, [what rounding does to it](Program::with_rounding) and its three derivatives over boxes.
+    ///
+    /// # Errors
+    /// When the engine cannot compile it.
+    pub fn rounding_bounds(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
+        compiled(&self.rounding_boxes, || self.engine.boxes(&self.value.with_rounding().simplified()))
     }
 }
 

@@ -3,7 +3,7 @@
 use iso_expr::Scratch;
 
 use crate::batch::{BoxBatch, PointBatch};
-use crate::certified::{Ahead, Entry, Expansion};
+use crate::certified::{Ahead, Entry, Expansion, Pixel};
 use crate::{Counters, Ray, Span};
 
 /// A point of the surface on a ray.
@@ -65,6 +65,8 @@ pub struct Workspace {
     pub(crate) ahead: Vec<Ahead>,
     /// Which cells a certified search is to enter.
     pub(crate) entries: Vec<Entry>,
+    /// Rays of a tile that are followed together.
+    pub(crate) pixels: Vec<Pixel>,
     /// A polynomial along a ray.
     pub(crate) expansion: Expansion,
 }

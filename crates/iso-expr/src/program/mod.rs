@@ -6,6 +6,7 @@ mod powers;
 mod rebuild;
 #[cfg(test)]
 pub(crate) mod reference;
+mod rounding;
 mod simplify;
 
 use std::collections::HashMap;

@@ -11,10 +11,11 @@ pub(super) const BATCH: usize = 8;
 /// An axis-parallel box.
 pub(super) type Bounds = [Interval; 3];
 
-/// F over boxes, and F with its gradient over boxes.
+/// F over boxes, F with its gradient over boxes, and [what rounding does to F](iso_expr::Program::with_rounding) there.
 pub(super) struct Kernels {
     pub(super) values: Arc<dyn BoxKernel>,
     pub(super) gradients: Arc<dyn BoxKernel>,
+    pub(super) rounding: Arc<dyn BoxKernel>,
 }
 
 /// F over a box, and its derivatives along the axes.

@@ -18,6 +18,7 @@ use std::sync::Arc;
 use iso_expr::{BatchKernel, CompileError, Program};
 
 use crate::{Counters, Outcome, Ray, Region, Span, Surface, Tracer, Workspace};
+pub(crate) use beams::Pixel;
 use beams::{Bundle, Subdivision};
 use cells::{Cell, Cells};
 use clip::Clip;
@@ -79,6 +80,7 @@ impl Certified {
             kernels: Kernels {
                 values: Arc::clone(surface.value_enclosures()?),
                 gradients: Arc::clone(surface.gradient_enclosures()?),
+                rounding: Arc::clone(surface.rounding_bounds()?),
             },
             value_batch: Arc::clone(surface.values()?),
             program: surface.program().clone(),

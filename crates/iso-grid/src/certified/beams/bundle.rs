@@ -64,6 +64,22 @@ impl<'a> Bundle<'a> {
         deviation
     }
 
+    /// How many rays of a part of the tile meet the region. As both are convex, rays whose corners meet it all do.
+    pub(super) fn count_in(&self, region: &Region, area: Area) -> u64 {
+        let meets =
+            |(column, row): (usize, usize)| region.clip(&self.rays[row * self.area.width + column]).is_some();
+        let count = (area.width * area.height) as u64;
+        if area.corners().into_iter().all(meets) {
+            count
+        } else if count == 1
+            || self.beam(area).passage(region).is_some_and(|passage| passage.start > passage.end)
+        {
+            0
+        } else {
+            area.quarters().map(|quarter| self.count_in(region, quarter)).sum()
+        }
+    }
+
     /// The rays of a part of the tile.
     pub(super) fn beam(&self, area: Area) -> Beam {
         let mut deviation = [Range::EMPTY; 2];
@@ -158,9 +174,14 @@ impl Spread {
         }
     }
 
+    /// What no component of any of the vectors exceeds.
+    pub(super) fn largest(&self) -> DVec3 {
+        (1.0 + f64::EPSILON) * (self.middle.abs() + self.radius)
+    }
+
     /// The largest component of any of the vectors; NaN when one is NaN.
     fn size(&self) -> f64 {
-        let sizes = (self.middle.abs() + self.radius).to_array();
+        let sizes = self.largest().to_array();
         sizes.into_iter().fold(0.0, |largest, size| if size <= largest { largest } else { size })
     }
 }
@@ -176,18 +197,27 @@ pub(super) struct Beam {
 }
 
 impl Beam {
-    /// A box around the points of all rays from `span.start` to `span.end`, which are not negative.
-    pub(super) fn bounds(&self, span: Span) -> [Span; 3] {
+    /// The corners of a box around the points of all rays in the region from `span.start` to `span.end`, which are not
+    /// negative. `None` when there are no such points.
+    pub(super) fn bounds(&self, span: Span, region: &Region) -> Option<(DVec3, DVec3)> {
+        let (lo, hi) = self.bounds_in_space(span);
+        let (lo, hi) = (lo.max(region.min()), hi.min(region.max()));
+        lo.cmple(hi).all().then_some((lo, hi))
+    }
+
+    /// The corners of a box around the points of all rays from `span.start` to `span.end`, which are not negative.
+    pub(super) fn bounds_in_space(&self, span: Span) -> (DVec3, DVec3) {
         let Span { start, end } = span;
-        [0, 1, 2].map(|axis| {
+        let sides = [0, 1, 2].map(|axis| {
             let ends = |spread: &Spread| {
                 let (middle, radius) = (spread.middle[axis], spread.radius[axis]);
                 (round_down(middle - radius), round_up(middle + radius))
             };
             let ((o_lo, o_hi), (d_lo, d_hi)) = (ends(&self.origins), ends(&self.directions));
             let (way_lo, way_hi) = ((start * d_lo).min(end * d_lo), (start * d_hi).max(end * d_hi));
-            Span { start: round_down(o_lo + round_down(way_lo)), end: round_up(o_hi + round_up(way_hi)) }
-        })
+            (round_down(o_lo + round_down(way_lo)), round_up(o_hi + round_up(way_hi)))
+        });
+        (sides.map(|(lo, _)| lo).into(), sides.map(|(_, hi)| hi).into())
     }
 
     /// A stretch, from 0 on, that holds the part of every ray in the region, and ends before it starts when all miss it.

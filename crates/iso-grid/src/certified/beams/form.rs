@@ -8,7 +8,7 @@ use super::bundle::Beam;
 use crate::Span;
 
 /// A few roundings, relative to what is rounded: more than any sum here takes.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Numbers no farther from `middle` than `radius`, rounding included. A NaN or an infinite radius says nothing, and every
 /// comparison is written such that nothing follows from it.

@@ -1,24 +1,23 @@
 //! The roots of single rays of a beam along which F is monotone.
 
 use glam::DVec3;
-use iso_expr::Interval;
 use iso_expr::interval::{round_down, round_up};
+use iso_expr::{Decoration, Program};
 
-use super::form::Form;
+use super::form::{Form, ROUNDING};
 use super::subdivision::{Part, Subdivision};
 use crate::certified::clip::Clip;
-use crate::{Hit, Outcome, Ray, Span, Workspace};
+use crate::{Hit, Outcome, Span, Workspace};
 
-/// How many steps towards a root are taken at most, and then how many proofs are tried.
-const STEPS: usize = 8;
-const PROOFS: usize = 4;
+/// How many values of F a ray is given at most before it is searched for its own.
+const STEPS: usize = 10;
 
 /// An enclosure of a root no wider than this many times what rounding of F alone makes it is as narrow as it gets.
 const ROUNDINGS: f64 = 2.0;
 
 /// A ray that may have a root.
 #[derive(Clone, Copy, Debug)]
-struct Pixel {
+pub(crate) struct Pixel {
     /// Which ray of the tile.
     place: usize,
     /// Where F is known to be monotone inside the region.
@@ -30,26 +29,84 @@ struct Pixel {
     /// F at the last place, and how far that is from `t`.
     value: f64,
     step: f64,
-    /// The part that the last step was of the one before.
-    rate: f64,
-    slope: f64,
-    /// Holds the root, if there is one in `reach`.
-    root: Interval,
+}
+
+/// What a double computed for F says about the root, all over a part.
+struct Sight {
+    /// One over the middle of the slopes of F.
+    inverse: f64,
+    /// How far that is from one over any slope, as part of it.
+    unevenness: f64,
+    /// How far rounding of F may move a root.
+    blur: f64,
+    /// How wide the enclosure of a root may be.
+    tolerance: f64,
+}
+
+/// What a value told of a pixel.
+enum Verdict {
+    /// There is no root where one is looked for.
+    Free,
+    /// There is one, narrowly enclosed.
+    Hit(Hit),
+    /// Another place is nearer to the root.
+    Open,
+    /// Single values do not tell.
+    Lost,
 }
 
 impl Subdivision<'_> {
     /// Ends or goes on with each ray of a part by its root there.
     pub(super) fn follow_each(&mut self, part: &Part, form: &Form) {
-        let mut pixels = self.pixels(part, form);
-        self.approach(&mut pixels, form);
-        self.prove(pixels, form);
+        let Some(sight) = self.sight(part, form) else { return self.search_each(part) };
+        let mut pixels = std::mem::take(&mut self.workspace.pixels);
+        pixels.clear();
+        self.start(part, form, &mut pixels);
+        for step in 1..=STEPS {
+            if pixels.is_empty() {
+                break;
+            }
+            self.approach(&mut pixels, &sight, step == STEPS);
+        }
+        self.workspace.pixels = pixels;
+    }
+
+    /// What values say over a part. `None` when rounding is not bounded there.
+    fn sight(&mut self, part: &Part, form: &Form) -> Option<Sight> {
+        let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
+        let (lo, hi) = part.beam.bounds(form.reach, &self.certified.region)?;
+        // Points are computed by two roundings, and so stay in the box when it is two doubles larger at each side.
+        let outward = |end: DVec3, round: fn(f64) -> f64| end.to_array().map(|end| round(round(end)));
+        boxes.clear();
+        boxes.push(outward(lo, round_down).into(), outward(hi, round_up).into());
+        boxes.evaluate(&*self.certified.kernels.rounding, scratch, 5);
+        counters.box_evaluations += 1;
+        let decoration = |output| boxes.decorated(output, 0).decoration;
+        let is_known = decoration(0) == Decoration::Common
+            && (1..5).all(|output| decoration(output) >= Decoration::Defined);
+        let magnitude = |output| boxes.interval(output, 0).magnitude();
+        let gradient = DVec3::from_array([2, 3, 4].map(magnitude));
+        let way = form.reach.end * part.beam.directions.largest();
+        let points = gradient.dot(way + lo.abs().max(hi.abs()) + f64::MIN_POSITIVE);
+        let error = (1.0 + ROUNDING) * Program::ROUNDING_UNIT * (magnitude(1) + points);
+
+        let slope = form.slope;
+        let least = (1.0 - ROUNDING) * (slope.middle.abs() - slope.radius);
+        let blur = (1.0 + ROUNDING) * error / least;
+        let tolerance = self.certified.accuracy * part.stretch.start.max(1.0).min(part.stretch.end);
+        let is_finite = blur.is_finite() && least > 0.0;
+        (is_known && is_finite).then(|| Sight {
+            inverse: 1.0 / slope.middle,
+            unevenness: (1.0 + ROUNDING) * slope.radius / least,
+            blur,
+            tolerance: tolerance.max(2.0 * ROUNDINGS * blur),
+        })
     }
 
     /// The rays of a part that are still followed. Those that may have a root so near to a face of the region that no
     /// point inside is known are searched each for its own.
-    fn pixels(&mut self, part: &Part, form: &Form) -> Vec<Pixel> {
+    fn start(&mut self, part: &Part, form: &Form, pixels: &mut Vec<Pixel>) {
         let Part { beam, stretch, is_inside, .. } = part;
-        let mut pixels = Vec::with_capacity(beam.area.width * beam.area.height);
         for row in beam.area.rows() {
             for column in beam.area.columns() {
                 let place = row * self.bundle.area.width + column;
@@ -71,133 +128,73 @@ impl Subdivision<'_> {
                     continue;
                 }
                 let (across, along) = beam.area.offset(column, row);
-                pixels.push(Pixel {
-                    place,
-                    reach,
-                    wanted,
-                    t: form.estimate(across, along).max(reach.start).min(reach.end),
-                    value: f64::NAN,
-                    step: f64::NAN,
-                    rate: 1.0,
-                    slope: form.slope.middle,
-                    root: Interval::ENTIRE,
-                });
+                let t = form.estimate(across, along).max(reach.start).min(reach.end);
+                pixels.push(Pixel { place, reach, wanted, t, value: f64::NAN, step: f64::NAN });
             }
         }
-        pixels
     }
 
-    /// Brings each pixel's t near to its root, by the secant method from the slope of the beam.
-    fn approach(&mut self, pixels: &mut [Pixel], form: &Form) {
+    /// Takes F at each pixel's t, and keeps the pixels that are nearer to their roots by that. The last time, those
+    /// are searched each for its own.
+    fn approach(&mut self, pixels: &mut Vec<Pixel>, sight: &Sight, is_last: bool) {
         let Workspace { points, scratch, counters, .. } = &mut *self.workspace;
-        let slopes = form.slope.interval();
-        let unevenness = form.unevenness();
-        let mut moving: Vec<usize> = (0..pixels.len()).collect();
-        for _ in 0..STEPS {
-            if moving.is_empty() {
-                break;
-            }
-            points.clear();
-            for number in &moving {
-                let pixel = &pixels[*number];
-                points.push(self.bundle.rays[pixel.place].at(pixel.t));
-            }
-            counters.trace_evaluations += moving.len() as u64;
-            let values = points.evaluate(&*self.certified.value_batch, scratch, 1);
-            let mut values = values.iter();
-            moving.retain(|number| {
-                let pixel = &mut pixels[*number];
-                let error = pixel.step(*values.next().expect("a value for each point"), slopes, unevenness);
-                // The proof multiplies the error by the unevenness.
-                error * unevenness > 0.25 * self.certified.accuracy * pixel.t.max(1.0)
-            });
-        }
-    }
-
-    /// Encloses each pixel's root, or finds that it has none.
-    fn prove(&mut self, mut pixels: Vec<Pixel>, form: &Form) {
-        let slopes = form.slope.interval();
-        for _ in 0..PROOFS {
-            if pixels.is_empty() {
-                return;
-            }
-            let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
-            boxes.clear();
-            for pixel in &pixels {
-                let (lo, hi) = around(&self.bundle.rays[pixel.place], pixel.t);
-                boxes.push(lo, hi);
-            }
-            counters.box_evaluations += pixels.len() as u64;
-            boxes.evaluate(&*self.certified.kernels.values, scratch, 1);
-            let mut number = 0;
-            pixels.retain_mut(|pixel| {
-                let value = boxes.interval(0, number);
-                number += 1;
-                match pixel.narrow(value, slopes, self.certified.accuracy) {
-                    Verdict::Free => false,
-                    Verdict::Hit(hit) => {
-                        self.outcomes[pixel.place] = Outcome::Hit(hit);
-                        self.open[pixel.place] = false;
-                        false
-                    }
-                    Verdict::Open => true,
+        points.clear();
+        points.extend(pixels.iter().map(|pixel| self.bundle.rays[pixel.place].at(pixel.t)));
+        counters.trace_evaluations += pixels.len() as u64;
+        let values = points.evaluate(&*self.certified.value_batch, scratch, 1);
+        let mut lost = Vec::new();
+        let mut kept = 0;
+        for number in 0..pixels.len() {
+            let mut pixel = pixels[number];
+            match pixel.look(values[number], sight) {
+                Verdict::Open if !is_last => {
+                    pixels[kept] = pixel;
+                    kept += 1;
                 }
-            });
+                Verdict::Open | Verdict::Lost => lost.push(pixel),
+                Verdict::Free => {}
+                Verdict::Hit(hit) => {
+                    self.outcomes[pixel.place] = Outcome::Hit(hit);
+                    self.open[pixel.place] = false;
+                }
+            }
         }
-        for Pixel { place, wanted, root, .. } in pixels {
-            let stretch = Span { start: wanted.start.max(root.lo), end: wanted.end.min(root.hi) };
-            self.search_one(place, stretch);
+        pixels.truncate(kept);
+        for pixel in lost {
+            self.search_one(pixel.place, pixel.wanted);
         }
     }
-}
-
-/// What is known of a pixel's root.
-enum Verdict {
-    /// There is none.
-    Free,
-    /// There is one, narrowly enclosed.
-    Hit(Hit),
-    Open,
 }
 
 impl Pixel {
-    /// One step of the secant method, where `value` is F at `t`. Returns about how far the root may still be; NaN where F is
-    /// not finite, which no step helps.
-    fn step(&mut self, value: f64, slopes: Interval, unevenness: f64) -> f64 {
-        let secant = (value - self.value) / self.step;
-        if secant.is_finite() {
-            self.slope = secant.max(slopes.lo).min(slopes.hi);
-        }
-        let next = self.t - value / self.slope;
-        if !next.is_finite() {
-            return f64::NAN;
-        }
-        let next = next.max(self.reach.start).min(self.reach.end);
-        let step = next - self.t;
-        let rate = if self.step.is_nan() { unevenness } else { (step / self.step).abs() };
-        // Each error is a constant times the two before it, and each step about as long as the error before it.
-        let error = step.abs() * rate * self.rate;
-        (self.t, self.value, self.step, self.rate) = (next, value, step, rate);
-        error
-    }
-
-    /// One step of the interval Newton method, where `value` encloses F at `t` and `slopes` its derivative in reach: all
-    /// roots in reach lie in the result, and if that lies in reach itself, there is one.
-    fn narrow(&mut self, value: Interval, slopes: Interval, accuracy: f64) -> Verdict {
-        let root = Interval::point(self.t).minus(value.over(slopes)).intersection(self.root);
-        let wanted = Interval { lo: self.wanted.start, hi: self.wanted.end };
-        if root.intersection(wanted).is_empty() {
+    /// One step of the interval Newton method, for all slopes of the part at once, and one of the secant method, where
+    /// `value` was computed for F at t. All roots in reach lie in the result of the first, and if that lies in
+    /// reach itself, there is one; the second tells where it is about.
+    fn look(&mut self, value: f64, sight: &Sight) -> Verdict {
+        let Sight { inverse, unevenness, blur, tolerance } = *sight;
+        let offset = value * inverse;
+        let middle = self.t - offset;
+        let rounding = ROUNDING * (self.t + offset.abs());
+        let radius = offset.abs() * unevenness + blur + rounding;
+        let root = Span { start: middle - radius, end: middle + radius };
+        if root.end < self.wanted.start || self.wanted.end < root.start {
             return Verdict::Free;
         }
-        let is_inside = self.reach.start <= root.lo && root.hi <= self.reach.end;
-        let tolerance = accuracy * root.lo.max(1.0).min(self.wanted.end);
-        let rounding = ROUNDINGS * value.width() / slopes.magnitude();
-        if is_inside && root.width() <= tolerance.max(rounding) {
-            let bracket = Span { start: root.lo, end: root.hi };
-            return Verdict::Hit(Hit { t: root.midpoint(), bracket });
+        // The slope between the last two places, if it is one that F may have.
+        let secant = self.step / (value - self.value);
+        let is_slope = (secant - inverse).abs() <= unevenness * inverse.abs();
+        let nearer = if is_slope { self.t - value * secant } else { middle };
+        if 2.0 * radius <= tolerance {
+            let is_inside = self.reach.start <= root.start && root.end <= self.reach.end;
+            let t = nearer.max(root.start).min(root.end);
+            return if is_inside { Verdict::Hit(Hit { t, bracket: root }) } else { Verdict::Lost };
         }
-        self.root = root;
-        self.t = root.midpoint().max(self.reach.start).min(self.reach.end);
+        let next = nearer.max(self.reach.start).min(self.reach.end);
+        let step = next - self.t;
+        if step == 0.0 || !nearer.is_finite() {
+            return Verdict::Lost;
+        }
+        (self.t, self.value, self.step) = (next, value, step);
         Verdict::Open
     }
 }
@@ -205,15 +202,4 @@ impl Pixel {
 /// What is in both; it ends before it starts when nothing is.
 fn common(a: Span, b: Span) -> Span {
     Span { start: a.start.max(b.start), end: a.end.min(b.end) }
-}
-
-/// A box around the point of a ray at `t`.
-fn around(ray: &Ray, t: f64) -> (DVec3, DVec3) {
-    let end = |round: fn(f64) -> f64| {
-        DVec3::from_array([0, 1, 2].map(|axis| {
-            let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
-            if direction == 0.0 { origin } else { round(origin + round(t * direction)) }
-        }))
-    };
-    (end(round_down), end(round_up))
 }

@@ -63,13 +63,9 @@ impl Slab {
     fn new(beam: &Rc<Beam>, stretch: Span, least_overlap: f64, region: &Region) -> Option<Self> {
         let overlap = (OVERLAP * (stretch.end - stretch.start)).max(least_overlap);
         let reach = Span { start: (stretch.start - overlap).max(0.0), end: stretch.end + overlap };
-        let bounds = beam.bounds(reach);
-        let (start, end) = (bounds.map(|axis| axis.start), bounds.map(|axis| axis.end));
-        let (start, end) = (DVec3::from_array(start), DVec3::from_array(end));
-        let (lo, hi) = (start.max(region.min()), end.min(region.max()));
-        let is_inside = lo == start && hi == end;
-        let beam = Rc::clone(beam);
-        lo.cmple(hi).all().then_some(Self { beam, stretch, reach, lo, hi, is_inside })
+        let (lo, hi) = beam.bounds(reach, region)?;
+        let is_inside = (lo, hi) == beam.bounds_in_space(reach);
+        Some(Self { beam: Rc::clone(beam), stretch, reach, lo, hi, is_inside })
     }
 
     /// A point of the box, in the middle of the beam where that is in the region.
@@ -112,9 +108,8 @@ impl<'a> Subdivision<'a> {
         outcomes: &'a mut [Outcome],
     ) -> Self {
         let rays = bundle.rays;
-        let region = &certified.region;
         workspace.counters.rays += rays.len() as u64;
-        workspace.counters.rays_in_region += rays.iter().filter_map(|ray| region.clip(ray)).count() as u64;
+        workspace.counters.rays_in_region += bundle.count_in(&certified.region, bundle.area);
         outcomes.fill(Outcome::Miss);
         Self {
             certified,
@@ -246,7 +241,7 @@ impl<'a> Subdivision<'a> {
     }
 
     /// Leaves a part to the search along single rays.
-    fn search_each(&mut self, part: &Part) {
+    pub(super) fn search_each(&mut self, part: &Part) {
         for row in part.beam.area.rows() {
             for column in part.beam.area.columns() {
                 let place = row * self.bundle.area.width + column;
