@@ -6,5 +6,6 @@ mod eval;
 mod explain;
 mod formulas;
 mod render;
+mod stress;
 mod trace;
 mod usage;

@@ -62,6 +62,12 @@ pub(crate) enum Failure {
     /// The picture cannot be made.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// A promise of the engines or of the certified method did not hold.
+    #[error("{promises} promises are broken; the report names them")]
+    Broken {
+        /// How many.
+        promises: usize,
+    },
     /// The threads cannot be started.
     #[error("cannot start the threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),

@@ -6,7 +6,6 @@
 mod camera;
 mod clock;
 mod commands;
-#[expect(dead_code, reason = "`iso stress` is about to use it")]
 mod comparison;
 mod engine;
 mod failure;
@@ -18,6 +17,7 @@ mod pictures;
 mod progress;
 mod report;
 mod rounding;
+mod stress;
 mod summary;
 mod table;
 mod values;
@@ -47,6 +47,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Trace(flags) => commands::trace::run(flags),
         Command::Explain(flags) => commands::explain::run(flags),
         Command::Bench(flags) => commands::bench::run(flags),
+        Command::Stress(flags) => commands::stress::run(flags),
         Command::Completions { shell } => commands::completions::run(shell),
     }
 }

@@ -13,7 +13,7 @@ pub fn color_from_srgb(bytes: [u8; 3]) -> Color {
 }
 
 /// The nearest three sRGB bytes; what is brighter than 1 becomes 1.
-pub(crate) fn srgb_from_color(color: Color) -> [u8; 3] {
+pub fn srgb_from_color(color: Color) -> [u8; 3] {
     color.to_array().map(|component| BORDERS.partition_point(|&border| border <= component) as u8)
 }
 

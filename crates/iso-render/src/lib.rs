@@ -13,7 +13,7 @@ mod size;
 mod smooth;
 
 pub use camera::{Camera, CameraError, Projection, View};
-pub use color::{Color, color_from_srgb};
+pub use color::{Color, color_from_srgb, srgb_from_color};
 pub use encode::{EncodeError, ImageFormat};
 pub use picture::{Layers, Picture, Status, StatusCounts};
 pub use render::{Progress, RenderError, Scene, render};

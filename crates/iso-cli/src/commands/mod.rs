@@ -5,4 +5,5 @@ pub(crate) mod completions;
 pub(crate) mod eval;
 pub(crate) mod explain;
 pub(crate) mod render;
+pub(crate) mod stress;
 pub(crate) mod trace;

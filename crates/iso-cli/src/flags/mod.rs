@@ -8,6 +8,7 @@ mod explain;
 mod formula;
 mod method;
 mod render;
+mod stress;
 mod trace;
 
 pub(crate) use bench::BenchFlags;
@@ -17,6 +18,7 @@ pub(crate) use explain::{ExplainFlags, KernelName, Section};
 pub(crate) use formula::{FormulaFlags, LevelFlag};
 pub(crate) use method::{EngineFlag, EngineName, MethodFlags, MethodName, ThreadsFlag};
 pub(crate) use render::{PictureFlags, RenderFlags};
+pub(crate) use stress::StressFlags;
 pub(crate) use trace::TraceFlags;
 
 use clap::{Parser, Subcommand};
@@ -46,6 +48,8 @@ pub(crate) enum Command {
     Explain(ExplainFlags),
     /// Measure the interpreter against native code
     Bench(BenchFlags),
+    /// Run the suite of hard cases and hold every method against what is proven
+    Stress(StressFlags),
     /// Write a completion script for a shell
     #[command(after_help = COMPLETION_EXAMPLES)]
     Completions {

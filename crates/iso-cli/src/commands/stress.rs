@@ -1,0 +1,65 @@
+//! `iso stress`: the suite of hard cases.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::prelude::*;
+
+use crate::engine::threads;
+use crate::failure::Failure;
+use crate::flags::StressFlags;
+use crate::output::{OutputFile, to_standard_output};
+use crate::progress::Progress;
+use crate::stress::{Case, Measured, cases, measure, write_page, write_table};
+
+/// Runs the suite, or one case of it.
+pub(crate) fn run(flags: StressFlags) -> Result<(), Failure> {
+    let to_file = |path: &Path| OutputFile::new(path.to_owned());
+    let json_replaces_table = flags.json.as_deref() == Some(Path::new("-"));
+    let json = flags.json.as_deref().filter(|_| !json_replaces_table).map(to_file).transpose()?;
+    let html = flags.html.as_deref().map(to_file).transpose()?;
+    let cases = chosen(flags.case.as_deref())?;
+    let (progress, done) = (Progress::new(true), AtomicU64::new(0));
+    let measured: Result<Vec<Measured>, Failure> = threads(&flags.threads)?.install(|| {
+        cases
+            .par_iter()
+            .map(|case| {
+                let measured = measure(case, flags.size);
+                progress.report(done.fetch_add(1, Ordering::Relaxed) + 1, cases.len() as u64);
+                measured
+            })
+            .collect()
+    });
+    progress.finish();
+    let measured = measured?;
+    if let Some(file) = json {
+        file.write(|writer| serde_json::to_writer_pretty(writer, &measured))?;
+    }
+    if let Some(file) = html {
+        file.write(|mut writer| write_page(&mut writer, &measured))?;
+    }
+    to_standard_output(|writer| match json_replaces_table {
+        true => {
+            serde_json::to_writer_pretty(&mut *writer, &measured)?;
+            writeln!(writer)
+        }
+        false => write_table(writer, &measured),
+    })?;
+    match measured.iter().map(|case| case.broken.len()).sum() {
+        0 => Ok(()),
+        broken => Err(Failure::Broken { promises: broken }),
+    }
+}
+
+fn chosen(name: Option<&str>) -> Result<Vec<Case>, Failure> {
+    let mut cases = cases();
+    let Some(name) = name else { return Ok(cases) };
+    cases.retain(|case| case.name == name);
+    match cases.is_empty() {
+        false => Ok(cases),
+        true => Err(Failure::usage(
+            format!("no case of the suite is called {name}"),
+            "`iso stress` without --case lists them all",
+        )),
+    }
+}
