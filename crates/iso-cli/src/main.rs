@@ -11,6 +11,7 @@ mod engine;
 mod failure;
 mod flags;
 mod formula;
+mod hints;
 mod method;
 mod output;
 mod pictures;

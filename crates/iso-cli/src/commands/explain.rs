@@ -13,6 +13,7 @@ use crate::clock::{milliseconds, timed};
 use crate::failure::Failure;
 use crate::flags::{ExplainFlags, KernelName, Section};
 use crate::formula::{Source, Text, minus_level};
+use crate::hints::{Hint, hints};
 use crate::output::to_standard_output;
 
 /// Shows the stages of a formula.
@@ -54,6 +55,10 @@ impl Stage {
         Self { size, unit, milliseconds: milliseconds(time), text }
     }
 
+    fn hints((hints, time): &(Vec<Hint>, Duration)) -> Self {
+        Self::new(hints.len(), "hints", *time, hints.iter().map(|hint| format!("{hint}\n")).collect())
+    }
+
     fn program((program, time): &(Program, Duration)) -> Self {
         Self::new(program.operations(), "operations", *time, program.to_string())
     }
@@ -76,6 +81,7 @@ fn stages(flags: &ExplainFlags) -> Result<Vec<(Section, Stage)>, Failure> {
         minus_level(&formula, flags.level.level)
     });
     let program = program?;
+    let hints = timed(|| hints(&program));
     let simplified = timed(|| program.simplified());
     let gradient = timed(|| simplified.0.with_gradient().simplified());
     let listing = Jit::new()?.listing(&simplified.0, kind(flags.sections.kernel))?;
@@ -87,6 +93,7 @@ fn stages(flags: &ExplainFlags) -> Result<Vec<(Section, Stage)>, Failure> {
     Ok(vec![
         (Section::Tree, Stage::new(tree.lines().count(), "lines", parse_time, tree)),
         (Section::Program, Stage::program(&(program, lower_time))),
+        (Section::Hints, Stage::hints(&hints)),
         (Section::Simplified, Stage::program(&simplified)),
         (Section::Gradient, Stage::program(&gradient)),
         (

@@ -42,6 +42,8 @@ pub(crate) enum Section {
     Tree,
     /// The program as the tree is lowered to it
     Program,
+    /// Where the formula loses digits that an equal one keeps
+    Hints,
     /// The program after simplification
     Simplified,
     /// The program with its three derivatives, after simplification
