@@ -3,7 +3,10 @@
 use std::collections::HashMap;
 
 use cranelift_codegen::ir::condcodes::FloatCC;
-use cranelift_codegen::ir::{ConstantData, FuncRef, InstBuilder, MemFlagsData, Type, Value, types};
+use cranelift_codegen::ir::{
+    ConstantData, FuncRef, InstBuilder, MemFlagsData, StackSlot, StackSlotData, StackSlotKind, Type, Value,
+    types,
+};
 use cranelift_frontend::FunctionBuilder;
 
 /// How many doubles one value of the written code holds.
@@ -23,14 +26,21 @@ impl Lanes {
             Self::Two => types::F64X2,
         }
     }
+
+    /// How many doubles that is.
+    pub(crate) fn count(self) -> usize {
+        self.ty().lane_count() as usize
+    }
 }
 
 /// Writes instructions on doubles side by side. Every instruction does the same in every lane.
 pub(crate) struct Writer<'a, 'b> {
     pub(crate) builder: &'a mut FunctionBuilder<'b>,
-    lanes: Lanes,
+    pub(crate) lanes: Lanes,
     /// The constants so far, by their bits.
     constants: HashMap<u64, Value>,
+    /// Room on the stack for the doubles of calls in place, the same for every call.
+    room: Option<StackSlot>,
 }
 
 /// The truth of a comparison in each lane: a byte for one lane, a mask of ones or zeros for two.
@@ -40,7 +50,7 @@ pub(crate) struct Mask(pub(crate) Value);
 impl<'a, 'b> Writer<'a, 'b> {
     /// Writes to the block where `builder` stands, and to no other.
     pub(crate) fn new(builder: &'a mut FunctionBuilder<'b>, lanes: Lanes) -> Self {
-        Self { builder, lanes, constants: HashMap::new() }
+        Self { builder, lanes, constants: HashMap::new(), room: None }
     }
 }
 
@@ -101,6 +111,25 @@ impl Writer<'_, '_> {
         });
         let low = self.builder.ins().scalar_to_vector(types::F64X2, low);
         self.builder.ins().insertlane(low, high, 1)
+    }
+
+    /// Calls a function of a pointer to the doubles of all `operands`, one after the other, which it replaces.
+    pub(crate) fn call_in_place(&mut self, function: FuncRef, operands: &[Value]) -> Vec<Value> {
+        let ty = self.lanes.ty();
+        let room = *self.room.get_or_insert_with(|| {
+            let size = ty.bytes() * operands.len() as u32;
+            let align_shift = size_of::<f64>().trailing_zeros() as u8;
+            let slot = StackSlotData::new(StackSlotKind::ExplicitSlot, size, align_shift);
+            self.builder.create_sized_stack_slot(slot)
+        });
+        let offsets = (0..).step_by(ty.bytes() as usize);
+        for (operand, offset) in operands.iter().zip(offsets.clone()) {
+            self.builder.ins().stack_store(types::I64, *operand, room, offset);
+        }
+        let address = self.builder.ins().stack_addr(types::I64, room, 0);
+        self.builder.ins().call(function, &[address]);
+        let load = |(_, offset)| self.builder.ins().stack_load(types::I64, ty, room, offset);
+        operands.iter().zip(offsets).map(load).collect()
     }
 
     fn call_once(&mut self, function: FuncRef, operands: &[Value]) -> Value {

@@ -7,10 +7,13 @@ use cranelift_jit::JITModule;
 use cranelift_module::{Linkage, Module};
 use iso_expr::{Operation, Value};
 
-use crate::{host, trampoline};
+use crate::{elementary, host, trampoline};
 
 /// Begins the name of every function that native code calls, so that none is taken for another library's.
 const PREFIX: &str = "iso_";
+
+/// Begins the name of every function of several doubles at once.
+const IN_LANES: &str = "iso_lanes_";
 
 /// The function that applies interval extensions.
 const EXTEND: &str = "iso_extend";
@@ -20,13 +23,19 @@ pub(crate) fn address(name: &str) -> Option<*const u8> {
     if name == EXTEND {
         return Some(trampoline::extend as *const u8);
     }
-    let name = name.strip_prefix(PREFIX)?;
-    let operation = Operation::all().find(|operation| format!("{operation:?}") == name)?;
-    Some(match operation.value() {
+    if let Some(name) = name.strip_prefix(IN_LANES) {
+        return elementary::function(operation(name)?).map(|function| function as *const u8);
+    }
+    Some(match operation(name.strip_prefix(PREFIX)?)?.value() {
         Value::Unary(function) => function as *const u8,
         Value::Binary(function) => function as *const u8,
         Value::Ternary(function) => function as *const u8,
     })
+}
+
+/// The operation called `name`.
+fn operation(name: &str) -> Option<Operation> {
+    Operation::all().find(|operation| format!("{operation:?}") == name)
 }
 
 /// The functions that one kernel calls, declared as they are first needed.
@@ -48,6 +57,14 @@ impl<'a> Calls<'a> {
     pub(crate) fn value(&mut self, kernel: &mut Function, operation: Operation) -> FuncRef {
         let operands = vec![AbiParam::new(types::F64); operation.arity()];
         self.declare(kernel, format!("{PREFIX}{operation:?}"), operands, vec![AbiParam::new(types::F64)])
+    }
+
+    /// The function that puts values of `operation` in the place of [`elementary::WIDTH`] arguments, if there is one, to be
+    /// called from `kernel`.
+    pub(crate) fn in_lanes(&mut self, kernel: &mut Function, operation: Operation) -> Option<FuncRef> {
+        elementary::function(operation)?;
+        let pointer = AbiParam::new(types::I64);
+        Some(self.declare(kernel, format!("{IN_LANES}{operation:?}"), vec![pointer], Vec::new()))
     }
 
     /// [`trampoline::extend`], to be called from `kernel`.

@@ -4,6 +4,7 @@ use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{InstBuilder, Value};
 use iso_expr::{Node, Operation, Program};
 
+use crate::elementary;
 use crate::lanes::Writer;
 use crate::symbols::Calls;
 
@@ -33,7 +34,17 @@ pub(crate) fn evaluate(
     arguments: &[[Value; 3]],
 ) -> Vec<Vec<Value>> {
     let mut values: Vec<Vec<Value>> = vec![Vec::with_capacity(program.nodes().len()); arguments.len()];
+    let fill_lanes = arguments.len() * writer.lanes.count() == elementary::WIDTH;
     for node in program.nodes() {
+        if let Node::Apply(operation, [operand, ..]) = node
+            && fill_lanes
+            && let Some(function) = calls.in_lanes(writer.builder.func, *operation)
+        {
+            let operands: Vec<_> = values.iter().map(|values| values[operand.index()]).collect();
+            let results = writer.call_in_place(function, &operands);
+            values.iter_mut().zip(results).for_each(|(values, result)| values.push(result));
+            continue;
+        }
         for (values, arguments) in values.iter_mut().zip(arguments) {
             let value = match node {
                 Node::Variable(axis) => arguments[*axis as usize],

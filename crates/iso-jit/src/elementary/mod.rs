@@ -1,0 +1,132 @@
+//! Elementary functions of eight doubles at once, correctly rounded.
+//!
+//! Each is computed from a table and a short polynomial as hi + lo with a proven bound of the error (Gal, Tang). Where every
+//! number within the bound rounds to the same double, that is the correctly rounded value (Ziv); where not, one time in some
+//! hundreds, and outside the range that is covered, the scalar function is called. So the bits are those of
+//! [`Operation::value`], whatever the machine.
+//!
+//! Only what gains is here. In batches sine and cosine take 5 ns a value instead of 14; exponential functions and logarithms made
+//! in the same way were no quicker than eight calls, 5 ns, because the scalar ones are short.
+
+// Elsewhere than on x86 every value is left to a call so far.
+#![cfg_attr(not(target_arch = "x86_64"), allow(dead_code))]
+
+mod double;
+mod sine;
+#[cfg(all(test, target_arch = "x86_64"))]
+mod tests;
+
+use iso_expr::{Operation, Value};
+
+/// How many doubles are computed at once.
+pub(crate) const WIDTH: usize = 8;
+
+/// Replaces arguments by values, on processors with the features that it was compiled for.
+pub(crate) type InPlace = unsafe extern "C" fn(&mut [f64; WIDTH]);
+
+/// The function of eight doubles that gives the values of `operation`, if there is one and the machine has fused
+/// multiplications, without which it would be slower than eight calls.
+pub(crate) fn function(operation: Operation) -> Option<InPlace> {
+    #[cfg(target_arch = "x86_64")]
+    return x86::versions(operation).next();
+    #[cfg(not(target_arch = "x86_64"))]
+    return None;
+}
+
+/// A value somewhere in hi + lo ± error.
+#[derive(Clone, Copy)]
+struct Approximation {
+    hi: f64,
+    lo: f64,
+    /// Infinite where nothing is known.
+    error: f64,
+}
+
+/// Approximates where that decides the rounding, else calls the function.
+#[inline(always)]
+fn round(
+    arguments: &mut [f64; WIDTH],
+    approximate: impl Fn(f64) -> Approximation,
+    function: impl Fn(f64) -> f64,
+) {
+    let (mut least, mut most) = ([0.0; WIDTH], [0.0; WIDTH]);
+    for lane in 0..WIDTH {
+        let Approximation { hi, lo, error } = approximate(arguments[lane]);
+        least[lane] = hi + (lo - error);
+        most[lane] = hi + (lo + error);
+    }
+    // Counted rather than searched, which is one comparison of all lanes.
+    let undecided: u64 = (0..WIDTH).map(|lane| u64::from(least[lane] != most[lane])).sum();
+    if undecided > 0 {
+        for lane in 0..WIDTH {
+            // An unknown value is not even equal to itself.
+            if least[lane] != most[lane] {
+                least[lane] = function(arguments[lane]);
+            }
+        }
+    }
+    *arguments = least;
+}
+
+/// The scalar function of an operation of one operand.
+fn scalar(operation: Operation) -> extern "C" fn(f64) -> f64 {
+    match operation.value() {
+        Value::Unary(function) => function,
+        _ => unreachable!("{operation:?} has one operand"),
+    }
+}
+
+/// The double nearest to `a`, an integer of less than 51 bits, and the same integer in the lowest bits of a word.
+#[inline(always)]
+fn nearest_integer(a: f64) -> (f64, u64) {
+    /// Adding it pushes the fraction out of the significand.
+    const SHIFT: f64 = 6_755_399_441_055_744.0;
+    let shifted = a + SHIFT;
+    (shifted - SHIFT, shifted.to_bits())
+}
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use iso_expr::Operation;
+
+    use super::{InPlace, WIDTH, round, scalar, sine};
+
+    /// The versions that this processor runs, the fastest first.
+    pub(super) fn versions(operation: Operation) -> impl Iterator<Item = InPlace> {
+        let avx512 = is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq");
+        let avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
+        let wide = avx512.then(|| avx512::function(operation)).flatten();
+        let narrow = avx2.then(|| avx2::function(operation)).flatten();
+        wide.into_iter().chain(narrow)
+    }
+
+    /// The functions, compiled for processors with certain features.
+    macro_rules! compiled_for {
+        ($module:ident, $features:literal) => {
+            mod $module {
+                use super::*;
+
+                pub(super) fn function(operation: Operation) -> Option<InPlace> {
+                    match operation {
+                        Operation::Sin => Some(sin),
+                        Operation::Cos => Some(cos),
+                        _ => None,
+                    }
+                }
+
+                #[target_feature(enable = $features)]
+                extern "C" fn sin(arguments: &mut [f64; WIDTH]) {
+                    round(arguments, |x| sine::sin(x), |x| scalar(Operation::Sin)(x));
+                }
+
+                #[target_feature(enable = $features)]
+                extern "C" fn cos(arguments: &mut [f64; WIDTH]) {
+                    round(arguments, |x| sine::cos(x), |x| scalar(Operation::Cos)(x));
+                }
+            }
+        };
+    }
+
+    compiled_for!(avx512, "avx512f,avx512dq");
+    compiled_for!(avx2, "avx2,fma");
+}
