@@ -47,6 +47,9 @@ pub enum GridError {
         /// The least that is allowed.
         least: f64,
     },
+    /// Work on the surface was asked to end: see [`Stop`](crate::Stop).
+    #[error("stopped before the method was prepared")]
+    Stopped,
     /// The engine cannot compile F − C.
     #[error(transparent)]
     Compile(#[from] CompileError),

@@ -34,12 +34,17 @@ impl Region {
     /// it meets the faces of the fewest axes, and [`Region::standard`] where nothing is found at all. What lies outside of
     /// the cube that was taken is not looked at; inside it, nothing of the surface is left out.
     ///
+    /// When the surface's [`Stop`](crate::Stop) is requested, any region.
+    ///
     /// # Errors
     /// When the engine cannot compile the surface.
     pub fn fitted(surface: &Surface, workspace: &mut Workspace) -> Result<Self, CompileError> {
         let kernel = &**surface.value_enclosures()?;
         let mut best: Option<(usize, Self)> = None;
         for cube in HALF_SIDES.map(cube) {
+            if surface.stop().is_requested() {
+                break;
+            }
             let Some(held) = cube.drawn_in(kernel, workspace) else { continue };
             let meets =
                 (0..3).filter(|&axis| held.min[axis] == cube.min[axis] || held.max[axis] == cube.max[axis]);
@@ -53,6 +58,9 @@ impl Region {
         }
         let Some((_, mut region)) = best else { return Ok(Self::standard()) };
         for _ in 0..ROUNDS {
+            if surface.stop().is_requested() {
+                break;
+            }
             let Some(closer) = region.drawn_in(kernel, workspace) else { break };
             let longest = region.extent().max_element();
             region = closer;

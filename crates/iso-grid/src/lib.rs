@@ -13,6 +13,7 @@ mod normals;
 mod paper;
 mod ray;
 mod region;
+mod stop;
 mod surface;
 #[cfg(test)]
 mod testing;
@@ -25,5 +26,6 @@ pub use normals::normals;
 pub use paper::{Direct, Grid, GridSettings, Octree};
 pub use ray::{Ray, Span};
 pub use region::{Region, RegionError};
+pub use stop::Stop;
 pub use surface::Surface;
 pub use tracer::{Hit, Outcome, Tracer, Workspace};

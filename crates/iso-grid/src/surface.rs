@@ -4,6 +4,8 @@ use std::sync::{Arc, OnceLock};
 
 use iso_expr::{BatchKernel, BoxKernel, CompileError, Engine, Program};
 
+use crate::Stop;
+
 /// The kernels of F − C and of its gradient. Each is compiled when it is first asked for.
 pub struct Surface {
     engine: Arc<dyn Engine>,
@@ -14,6 +16,7 @@ pub struct Surface {
     value_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     gradient_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     rounding_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
+    stop: Stop,
 }
 
 impl Surface {
@@ -32,7 +35,18 @@ impl Surface {
             value_boxes: OnceLock::new(),
             gradient_boxes: OnceLock::new(),
             rounding_boxes: OnceLock::new(),
+            stop: Stop::default(),
         }
+    }
+
+    /// The same surface, on which all work ends when `stop` is requested.
+    pub fn stopped_by(self, stop: Stop) -> Self {
+        Self { stop, ..self }
+    }
+
+    /// What ends work on this surface.
+    pub fn stop(&self) -> &Stop {
+        &self.stop
     }
 
     /// The program of F − C.

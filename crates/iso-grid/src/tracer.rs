@@ -33,6 +33,8 @@ pub trait Tracer: Send + Sync {
     /// Says for each ray how the search along it ended. Both slices are equally long.
     ///
     /// The outcome of a ray depends on that ray alone, not on its neighbours in the slice, nor on earlier calls.
+    ///
+    /// When the surface's [`Stop`](crate::Stop) is requested, this returns soon, and no outcome means anything.
     fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]);
 
     /// The same for a tile: neighbouring rays of a picture, `width` in each row, row by row from the top.

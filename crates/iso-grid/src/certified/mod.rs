@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use iso_expr::{BatchKernel, CompileError, Program};
 
-use crate::{Counters, Outcome, Ray, Region, Span, Surface, Tracer, Workspace};
+use crate::{Counters, Outcome, Ray, Region, Span, Stop, Surface, Tracer, Workspace};
 pub(crate) use beams::Pixel;
 use beams::{Bundle, Subdivision};
 use cells::{Cell, Cells};
@@ -62,6 +62,7 @@ pub struct Certified {
     region: Region,
     cells: Cells,
     accuracy: f64,
+    stop: Stop,
 }
 
 /// How many boxes an easy ray takes at most.
@@ -88,6 +89,7 @@ impl Certified {
             cells: Cells::new(&region),
             region,
             accuracy: Self::ACCURACY,
+            stop: surface.stop().clone(),
         })
     }
 
@@ -108,13 +110,14 @@ impl Certified {
             line: Line { kernels: &self.kernels, scratch, ray, evaluations: 0 },
             program: &self.program,
             accuracy: self.accuracy,
+            stop: &self.stop,
             clip,
             way: Way::Cells(Walk::new(&self.cells, ray, entry, entries)),
             budget: if self.polynomial.is_some() { EASY } else { WORK_LIMIT },
             ahead,
         };
         let mut end = search.run();
-        if let (Err(rest), Some(polynomial)) = (end, &self.polynomial) {
+        if let (Err(rest), Some(polynomial), false) = (end, &self.polynomial, self.stop.is_requested()) {
             search.way.tally(counters);
             let rest = Span { end: entry.1.end, ..rest };
             search.way = Way::Pieces(Isolation::new(polynomial, &search.line, rest, expansion));

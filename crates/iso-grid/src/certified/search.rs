@@ -9,7 +9,7 @@ use super::isolate::Isolation;
 use super::line::Line;
 use super::side::side;
 use super::walk::Walk;
-use crate::{Counters, Hit, Outcome, Span};
+use crate::{Counters, Hit, Outcome, Span, Stop};
 
 /// Into how many parts an open stretch is cut.
 const PARTS: usize = 4;
@@ -33,6 +33,7 @@ pub(super) struct Search<'a> {
     pub(super) line: Line<'a>,
     pub(super) program: &'a Program,
     pub(super) accuracy: f64,
+    pub(super) stop: &'a Stop,
     pub(super) clip: Clip,
     pub(super) way: Way<'a>,
     /// How many boxes may be enclosed.
@@ -74,11 +75,11 @@ pub(crate) struct Ahead {
 }
 
 impl Search<'_> {
-    /// How the search ends, or what is left of the ray when the budget is spent. Everything before the end is proven.
+    /// How the search ends, or what is left of the ray when the budget is spent or work is to end. Everything before the end is proven.
     pub(super) fn run(&mut self) -> Result<Outcome, Span> {
         self.ahead.clear();
         while let Some(Ahead { stretch, finding }) = self.next() {
-            if self.line.evaluations >= self.budget {
+            if self.line.evaluations >= self.budget || self.stop.is_requested() {
                 return Err(Span { start: stretch.start, end: self.clip.outer.end });
             }
             let end = match finding {

@@ -7,7 +7,7 @@ use iso_expr::BatchKernel;
 use crate::paper::lockstep;
 use crate::paper::settings::check_step;
 use crate::paper::stretch::{Spacing, Stretch, Stretches};
-use crate::{Counters, GridError, Outcome, Ray, Region, Surface, Tracer, Workspace};
+use crate::{Counters, GridError, Outcome, Ray, Region, Stop, Surface, Tracer, Workspace};
 
 /// Samples each ray through the whole region and bisects at the first change of sign: the paper's N = 0.
 ///
@@ -21,6 +21,7 @@ pub struct Direct {
     values: Arc<dyn BatchKernel>,
     region: Region,
     spacing: Spacing,
+    stop: Stop,
 }
 
 impl Direct {
@@ -36,13 +37,13 @@ impl Direct {
         check_step(step)?;
         let cells = f64::from(Self::CELLS);
         let spacing = Spacing::new(step, region.extent().max_element() / cells, cells);
-        Ok(Self { values: Arc::clone(surface.values()?), region, spacing })
+        Ok(Self { values: Arc::clone(surface.values()?), region, spacing, stop: surface.stop().clone() })
     }
 }
 
 impl Tracer for Direct {
     fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]) {
-        lockstep::trace(&*self.values, &self.region, workspace, rays, outcomes, |ray, span| {
+        lockstep::trace(&*self.values, &self.stop, &self.region, workspace, rays, outcomes, |ray, span| {
             Whole(Some(self.spacing.stretch(ray.direction, span)))
         });
     }

@@ -4,10 +4,10 @@ use glam::DVec3;
 use iso_expr::{BatchKernel, Scratch};
 use rayon::prelude::*;
 
-use crate::Counters;
 use crate::batch::PointBatch;
 use crate::paper::lattice::{self, Lattice};
 use crate::paper::sign::Signs;
+use crate::{Counters, GridError, Stop};
 
 /// Points evaluated by one call of the kernel.
 const BATCH: usize = 1024;
@@ -34,14 +34,16 @@ enum State {
 
 impl Cells {
     /// Finds the existence cells of a grid: first by the signs at its points, then by examining again, in parts, each
-    /// other cell that borders an existence cell, until no such cell is left.
+    /// other cell that borders an existence cell, until no such cell is left. An error when `stop` is requested.
     pub(crate) fn find(
         kernel: &dyn BatchKernel,
+        stop: &Stop,
         lattice: &Lattice,
         refinement: [u32; 3],
         counters: &mut Counters,
-    ) -> Self {
-        let signs = signs_at_points(kernel, lattice);
+    ) -> Result<Self, GridError> {
+        let signs = signs_at_points(kernel, stop, lattice);
+        stop.check()?;
         counters.preprocess_evaluations += signs.len() as u64;
         let corner_signs = |cell: usize| -> Signs {
             let place = lattice::place(cell, lattice.cells());
@@ -59,8 +61,9 @@ impl Cells {
         let mut newest: Vec<usize> = cells.existence().collect();
         counters.cells += cells.states.len() as u64;
         counters.existence_cells += newest.len() as u64;
-        let examination = Examination { kernel, refinement };
+        let examination = Examination { kernel, stop, refinement };
         while !newest.is_empty() {
+            stop.check()?;
             let candidates = cells.label_plain_neighbours(&newest);
             let found = examination.of_all(&candidates, |cell| {
                 let place = lattice::place(cell, counts);
@@ -76,7 +79,8 @@ impl Cells {
                 cells.states[cell] = State::Existence;
             }
         }
-        cells
+        stop.check()?;
+        Ok(cells)
     }
 
     /// Whether the cell at `place` holds the surface.
@@ -104,13 +108,16 @@ impl Cells {
     }
 }
 
-/// The signs at all points of a grid, each evaluated once.
-fn signs_at_points(kernel: &dyn BatchKernel, lattice: &Lattice) -> Vec<Signs> {
+/// The signs at all points of a grid, each evaluated once, until `stop` is requested.
+fn signs_at_points(kernel: &dyn BatchKernel, stop: &Stop, lattice: &Lattice) -> Vec<Signs> {
     let counts = lattice.points();
     let mut signs = vec![Signs::NONE; counts.iter().product()];
     signs.par_chunks_mut(BATCH).enumerate().for_each_init(
         || (PointBatch::default(), Scratch::default()),
         |(batch, scratch), (chunk, signs)| {
+            if stop.is_requested() {
+                return;
+            }
             batch.clear();
             for offset in 0..signs.len() {
                 batch.push(lattice.point(lattice::place(chunk * BATCH + offset, counts)));
@@ -126,6 +133,7 @@ fn signs_at_points(kernel: &dyn BatchKernel, lattice: &Lattice) -> Vec<Signs> {
 /// The second look at cells whose corners have one sign.
 pub(crate) struct Examination<'a> {
     pub(crate) kernel: &'a dyn BatchKernel,
+    pub(crate) stop: &'a Stop,
     pub(crate) refinement: [u32; 3],
 }
 
@@ -148,7 +156,7 @@ pub(crate) struct Found<C> {
 }
 
 impl Examination<'_> {
-    /// Examines cells, each on its own, over all threads.
+    /// Examines cells, each on its own, over all threads, until it is stopped.
     pub(crate) fn of_all<C: Copy + Send + Sync>(
         &self,
         cells: &[C],
@@ -159,6 +167,9 @@ impl Examination<'_> {
             .map_init(
                 || (PointBatch::default(), Scratch::default()),
                 |(batch, scratch), cells| {
+                    if self.stop.is_requested() {
+                        return (Vec::new(), 0);
+                    }
                     let mut suspects: Vec<Suspect> = cells.iter().map(|&cell| suspect(cell)).collect();
                     let evaluations = self.of_some(&mut suspects, batch, scratch);
                     let holding = cells.iter().zip(&suspects).filter(|(_, suspect)| suspect.signs.differ());
@@ -316,8 +327,14 @@ mod tests {
             let lattice = Lattice::new(&cube(), cells);
             let kernel = surface_without_gradient(function);
             let mut counters = Counters::default();
-            let found =
-                Cells::find(&**kernel.values().unwrap(), &lattice, settings.refinement, &mut counters);
+            let found = Cells::find(
+                &**kernel.values().unwrap(),
+                &Stop::default(),
+                &lattice,
+                settings.refinement,
+                &mut counters,
+            )
+            .unwrap();
             for (cell, &holds) in holds.iter().enumerate() {
                 assert_eq!(found.holds_surface(lattice::place(cell, lattice.cells())), holds, "cell {cell}");
             }

@@ -9,7 +9,7 @@ use crate::paper::lattice::Lattice;
 use crate::paper::lockstep;
 use crate::paper::stretch::{Spacing, Stretch, Stretches};
 use crate::paper::walk::CellWalk;
-use crate::{Counters, GridError, GridSettings, Outcome, Ray, Region, Surface, Tracer, Workspace};
+use crate::{Counters, GridError, GridSettings, Outcome, Ray, Region, Stop, Surface, Tracer, Workspace};
 
 /// The paper's method: a grid that knows which of its cells hold the surface.
 ///
@@ -33,6 +33,7 @@ pub struct Grid {
     lattice: Lattice,
     cells: Cells,
     spacing: Spacing,
+    stop: Stop,
     preprocessing: Counters,
 }
 
@@ -43,8 +44,8 @@ impl Grid {
     /// Prepares the method: evaluates F − C at the grid's points, over all threads, and finds the existence cells.
     ///
     /// # Errors
-    /// When a setting is out of range, the grid has more than [`Grid::MOST_CELLS`] cells, or the engine cannot compile
-    /// F − C.
+    /// When a setting is out of range, the grid has more than [`Grid::MOST_CELLS`] cells, the engine cannot compile F − C,
+    /// or the surface's [`Stop`] is requested.
     pub fn new(surface: &Surface, region: Region, settings: &GridSettings) -> Result<Self, GridError> {
         settings.check()?;
         if settings.count() > Self::MOST_CELLS {
@@ -54,15 +55,16 @@ impl Grid {
         let values = Arc::clone(surface.values()?);
         let lattice = Lattice::new(&region, settings.cells);
         let mut preprocessing = Counters::default();
-        let cells = Cells::find(&*values, &lattice, settings.refinement, &mut preprocessing);
+        let cells = Cells::find(&*values, surface.stop(), &lattice, settings.refinement, &mut preprocessing)?;
         let spacing = Spacing::new(settings.step, lattice.largest_side(), 1.0);
-        Ok(Self { values, region, lattice, cells, spacing, preprocessing })
+        let stop = surface.stop().clone();
+        Ok(Self { values, region, lattice, cells, spacing, stop, preprocessing })
     }
 }
 
 impl Tracer for Grid {
     fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]) {
-        lockstep::trace(&*self.values, &self.region, workspace, rays, outcomes, |ray, span| {
+        lockstep::trace(&*self.values, &self.stop, &self.region, workspace, rays, outcomes, |ray, span| {
             ExistenceStretches {
                 grid: self,
                 walk: CellWalk::new(&self.lattice, *ray, span),

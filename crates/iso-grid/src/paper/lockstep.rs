@@ -4,7 +4,7 @@ use iso_expr::BatchKernel;
 
 use crate::paper::search::Search;
 use crate::paper::stretch::Stretches;
-use crate::{Outcome, Ray, Region, Span, Workspace};
+use crate::{Outcome, Ray, Region, Span, Stop, Workspace};
 
 /// Searches under way at once: enough to fill a kernel's batch, few enough to stay in the nearest cache.
 const LANES: usize = 64;
@@ -17,9 +17,10 @@ struct Lane<S> {
 }
 
 /// Searches along each ray the stretches that `stretches` gives for its part inside `region`, all rays in lockstep: each
-/// round, every search asks for its next points, and one call of the kernel answers them all.
+/// round, every search asks for its next points, and one call of the kernel answers them all. Ends early when `stop` is requested.
 pub(crate) fn trace<S: Stretches>(
     kernel: &dyn BatchKernel,
+    stop: &Stop,
     region: &Region,
     workspace: &mut Workspace,
     rays: &[Ray],
@@ -39,7 +40,7 @@ pub(crate) fn trace<S: Stretches>(
             counters.rays_in_region += 1;
             lanes.push(Lane { place, search, asked: 0 });
         }
-        if lanes.is_empty() {
+        if lanes.is_empty() || stop.is_requested() {
             return;
         }
         points.clear();

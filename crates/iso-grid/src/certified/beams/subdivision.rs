@@ -130,6 +130,9 @@ impl<'a> Subdivision<'a> {
         self.least_overlap = LEAST_OVERLAP * stretch.end;
         self.ahead.push(Part { beam, stretch, form: None, is_inside: false });
         while let Some(part) = self.ahead.pop() {
+            if self.certified.stop.is_requested() {
+                return;
+            }
             if !self.is_open(part.beam.area) {
                 continue;
             }

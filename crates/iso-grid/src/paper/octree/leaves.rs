@@ -9,7 +9,7 @@ use crate::batch::PointBatch;
 use crate::paper::existence::{Examination, Suspect};
 use crate::paper::lattice::{self, Lattice};
 use crate::paper::sign::Signs;
-use crate::{Counters, GridError};
+use crate::{Counters, GridError, Stop};
 
 /// How many blocks the longest axis holds at least when the search begins, unless it has fewer cells.
 const COARSEST: usize = 8;
@@ -19,14 +19,15 @@ const BATCH: usize = 1024;
 /// The places of the existence cells, in no particular order.
 pub(super) fn find(
     kernel: &dyn BatchKernel,
+    stop: &Stop,
     lattice: &Lattice,
     refinement: [u32; 3],
     counters: &mut Counters,
 ) -> Result<Vec<[usize; 3]>, GridError> {
     let longest = lattice.cells().into_iter().max().unwrap_or(1);
     let mut blocks = Blocks { lattice, side: 1 << (longest / COARSEST).max(1).ilog2() };
-    let mut signs = PointSigns { kernel, lattice, known: PlaceMap::default() };
-    let examination = Examination { kernel, refinement };
+    let mut signs = PointSigns { kernel, stop, lattice, known: PlaceMap::default() };
+    let examination = Examination { kernel, stop, refinement };
     let mut candidates: Vec<[usize; 3]> =
         (0..blocks.counts().iter().product()).map(|number| lattice::place(number, blocks.counts())).collect();
     let holding = loop {
@@ -54,6 +55,7 @@ fn holding(
     let mut looked_at = candidates.len() as u64;
     check_count(looked_at)?;
     signs.learn(blocks, &candidates);
+    signs.stop.check()?;
     let mut newest = candidates;
     newest.retain(|&block| signs.at_corners(blocks, block).differ());
     let counts = blocks.counts();
@@ -69,6 +71,7 @@ fn holding(
         looked_at += bordering.len() as u64;
         check_count(looked_at)?;
         signs.learn(blocks, &bordering);
+        signs.stop.check()?;
         let suspects: Vec<_>;
         (newest, suspects) =
             bordering.into_iter().partition(|&block| signs.at_corners(blocks, block).differ());
@@ -82,6 +85,7 @@ fn holding(
         counters.preprocess_evaluations += found.evaluations;
         newest.extend(found.holding);
     }
+    signs.stop.check()?;
     counters.cells += looked_at;
     Ok(holding)
 }
@@ -130,12 +134,13 @@ impl Blocks<'_> {
 /// The signs at those points of a lattice that were asked for, each evaluated once.
 struct PointSigns<'a> {
     kernel: &'a dyn BatchKernel,
+    stop: &'a Stop,
     lattice: &'a Lattice,
     known: PlaceMap<Signs>,
 }
 
 impl PointSigns<'_> {
-    /// Evaluates what is not yet known at the corners of some blocks.
+    /// Evaluates what is not yet known at the corners of some blocks, until it is stopped.
     fn learn(&mut self, blocks: &Blocks<'_>, of: &[[usize; 3]]) {
         let counts = self.lattice.points();
         let mut unknown = Vec::new();
@@ -146,12 +151,15 @@ impl PointSigns<'_> {
                 Signs::NONE
             });
         }
-        let (kernel, lattice) = (self.kernel, self.lattice);
+        let (kernel, stop, lattice) = (self.kernel, self.stop, self.lattice);
         let learnt: Vec<Signs> = unknown
             .par_chunks(BATCH)
             .map_init(
                 || (PointBatch::default(), Scratch::default()),
                 |(batch, scratch), chunk| -> Vec<Signs> {
+                    if stop.is_requested() {
+                        return Vec::new();
+                    }
                     batch.clear();
                     chunk.iter().for_each(|&point| batch.push(lattice.point(lattice::place(point, counts))));
                     batch.evaluate(kernel, scratch, 1).iter().map(|&value| Signs::of(value)).collect()
@@ -185,9 +193,9 @@ mod tests {
         let surface = surface_without_gradient(function);
         let kernel = &**surface.values().unwrap();
         let refinement = GridSettings::new(cells).refinement;
-        let leaves = find(kernel, &lattice, refinement, &mut Counters::default()).unwrap();
+        let leaves = find(kernel, &Stop::default(), &lattice, refinement, &mut Counters::default()).unwrap();
         let mut counters = Counters::default();
-        let grid = Cells::find(kernel, &lattice, refinement, &mut counters);
+        let grid = Cells::find(kernel, &Stop::default(), &lattice, refinement, &mut counters).unwrap();
         let both = leaves.iter().filter(|&&cell| grid.holds_surface(cell)).count();
         [leaves.len(), counters.existence_cells as usize, both]
     }

@@ -11,7 +11,7 @@ use iso_expr::BatchKernel;
 use crate::paper::lattice::Lattice;
 use crate::paper::lockstep;
 use crate::paper::stretch::{Spacing, Stretch, Stretches};
-use crate::{Counters, GridError, GridSettings, Outcome, Ray, Region, Surface, Tracer, Workspace};
+use crate::{Counters, GridError, GridSettings, Outcome, Ray, Region, Stop, Surface, Tracer, Workspace};
 use tree::{Tree, TreeWalk};
 
 /// The paper's closing idea: the sign test of [`Grid`](crate::Grid), made on blocks of cells first.
@@ -32,6 +32,7 @@ pub struct Octree {
     lattice: Lattice,
     tree: Tree,
     spacing: Spacing,
+    stop: Stop,
     preprocessing: Counters,
 }
 
@@ -42,26 +43,30 @@ impl Octree {
     /// Prepares the method: finds the existence cells, over all threads, and builds the tree above them.
     ///
     /// # Errors
-    /// When a setting is out of range, more than [`Octree::MOST_CELLS`] blocks of one size come up, or the engine cannot
-    /// compile F − C.
+    /// When a setting is out of range, more than [`Octree::MOST_CELLS`] blocks of one size come up, the engine cannot
+    /// compile F − C, or the surface's [`Stop`] is requested.
     pub fn new(surface: &Surface, region: Region, settings: &GridSettings) -> Result<Self, GridError> {
         settings.check()?;
         let values = Arc::clone(surface.values()?);
         let lattice = Lattice::new(&region, settings.cells);
         let mut preprocessing = Counters::default();
-        let leaves = leaves::find(&*values, &lattice, settings.refinement, &mut preprocessing)?;
+        let leaves =
+            leaves::find(&*values, surface.stop(), &lattice, settings.refinement, &mut preprocessing)?;
         let tree = Tree::new(&leaves, lattice.cells());
         let spacing = Spacing::new(settings.step, lattice.largest_side(), 1.0);
-        Ok(Self { values, region, lattice, tree, spacing, preprocessing })
+        let stop = surface.stop().clone();
+        Ok(Self { values, region, lattice, tree, spacing, stop, preprocessing })
     }
 }
 
 impl Tracer for Octree {
     fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]) {
-        lockstep::trace(&*self.values, &self.region, workspace, rays, outcomes, |ray, span| LeafStretches {
-            walk: TreeWalk::new(&self.tree, &self.lattice, *ray, span),
-            spacing: self.spacing,
-            ray: *ray,
+        lockstep::trace(&*self.values, &self.stop, &self.region, workspace, rays, outcomes, |ray, span| {
+            LeafStretches {
+                walk: TreeWalk::new(&self.tree, &self.lattice, *ray, span),
+                spacing: self.spacing,
+                ray: *ray,
+            }
         });
     }
 
