@@ -3,6 +3,10 @@
 //! The first line names the columns, whose order is free, and every other line is a row. Columns that nobody asks for are
 //! ignored, and so are empty lines and lines that begin with `#`.
 
+#[cfg(any(test, fuzzing))]
+#[path = "table/property.rs"]
+pub(crate) mod property;
+
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -202,6 +206,8 @@ pub(crate) fn digits(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use iso_expr::random::Random;
+
     use super::*;
 
     fn table<const N: usize>(text: &str, names: [&str; N]) -> Result<[Vec<f64>; N], String> {
@@ -237,6 +243,36 @@ mod tests {
         );
         let long = format!("x,y\n{},0\n", "9e".repeat(60));
         assert!(error(&long).ends_with("9e9e…`"), "{}", error(&long));
+    }
+
+    #[test]
+    fn any_bytes_are_read_or_refused() {
+        const PIECES: [&[u8]; 18] = [
+            b"x",
+            b"y",
+            b",",
+            b",",
+            b"\n",
+            b"\n",
+            b"\"",
+            b"#",
+            b"1",
+            b"-2e5",
+            b"nan",
+            b"inf",
+            b" ",
+            b"\r",
+            b"\xef\xbb\xbf",
+            b"1e999",
+            b"\xff",
+            b"\0",
+        ];
+        let mut random = Random::new(1);
+        for _ in 0..20_000 {
+            let mut bytes = if random.below(2) == 0 { b"x,y\n".to_vec() } else { Vec::new() };
+            (0..random.below(24)).for_each(|_| bytes.extend_from_slice(random.choose(&PIECES)));
+            property::bytes_are_read_or_refused(&bytes);
+        }
     }
 
     #[test]

@@ -3,6 +3,8 @@
 //! The same seed gives the same sequence on every machine. Operations are drawn from [`Operation::all`], so that a new one
 //! is tested as soon as it stands in the table.
 
+use std::vec::IntoIter;
+
 use crate::{Axis, Decorated, Interval, NodeId, Operation, Program};
 
 /// Doubles at which arithmetic changes its ways.
@@ -30,22 +32,36 @@ const SPECIAL: [f64; 18] = [
 /// Constants as they stand in formulas, of which much can be simplified.
 const SIMPLE: [f64; 12] = [0.0, -0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 4.0, 0.5, 0.25, 10.0];
 
+/// By how much the generator's state grows with each number: 2⁶⁴ over the golden ratio, made odd.
+const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
+
 /// A generator of pseudo-random numbers: SplitMix64 (Steele, Lea and Flood, 'Fast splittable pseudorandom number
 /// generators', 2014).
 #[derive(Clone, Debug)]
 pub struct Random {
     state: u64,
+    choices: IntoIter<u16>,
 }
 
 impl Random {
     /// The generator whose sequence `seed` determines.
     pub fn new(seed: u64) -> Self {
-        Self { state: seed }
+        Self { state: seed, choices: Vec::new().into_iter() }
+    }
+
+    /// The generator whose first numbers `bytes` determine, two bytes for each, so that a fuzzer that changes a byte changes
+    /// one choice.
+    pub fn led_by(bytes: &[u8]) -> Self {
+        let choices: Vec<u16> = bytes.as_chunks().0.iter().map(|&pair| u16::from_le_bytes(pair)).collect();
+        Self { choices: choices.into_iter(), ..Self::new(0) }
     }
 
     /// 64 random bits.
     pub fn bits(&mut self) -> u64 {
-        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        self.state = match self.choices.next() {
+            Some(choice) => u64::from(choice).wrapping_mul(STEP),
+            None => self.state.wrapping_add(STEP),
+        };
         let mut bits = self.state;
         bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

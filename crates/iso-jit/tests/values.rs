@@ -1,49 +1,12 @@
 //! Native values against the interpreter's, bit for bit.
 
-use iso_expr::engine::Points;
+#[path = "properties/values.rs"]
+mod values;
+
 use iso_expr::random::Random;
-use iso_expr::{Axis, Engine, Interpreter, Operation, Program, Scratch};
+use iso_expr::{Axis, Engine, Operation, Program, Scratch};
 use iso_jit::Jit;
-
-/// The bits, any NaN counting as one.
-fn bits(values: &[f64]) -> Vec<u64> {
-    values.iter().map(|value| if value.is_nan() { f64::NAN } else { *value }.to_bits()).collect()
-}
-
-/// Checks the point kernel at each of `points`, and the batch kernel at all of them at once, against the interpreter.
-fn check(program: &Program, points: &[[f64; 3]]) {
-    let (jit, interpreter) = (Jit::new().unwrap(), Interpreter);
-    let mut scratch = Scratch::default();
-    let outputs = program.outputs().len();
-
-    let (native, reference) = (jit.point(program).unwrap(), interpreter.point(program).unwrap());
-    let mut expected = Vec::new();
-    for point @ [x, y, z] in points {
-        let (mut value, mut right) = (vec![0.0; outputs], vec![0.0; outputs]);
-        native.evaluate(&mut scratch, *x, *y, *z, &mut value);
-        reference.evaluate(&mut scratch, *x, *y, *z, &mut right);
-        assert_eq!(bits(&value), bits(&right), "{value:?} is not {right:?} at {point:?} in\n{program}");
-        expected.push(right);
-    }
-
-    let [x, y, z] = [0, 1, 2].map(|axis| points.iter().map(|point| point[axis]).collect::<Vec<_>>());
-    let mut values = vec![0.0; outputs * points.len()];
-    jit.batch(program).unwrap().evaluate(&mut scratch, Points { x: &x, y: &y, z: &z }, &mut values);
-    for (place, right) in expected.iter().enumerate() {
-        let value: Vec<_> = (0..outputs).map(|output| values[output * points.len() + place]).collect();
-        let point = points[place];
-        assert_eq!(
-            bits(&value),
-            bits(right),
-            "{value:?} is not {right:?} at {point:?} in a batch of\n{program}"
-        );
-    }
-}
-
-/// Points with coordinates of every kind: ordinary, huge, tiny, subnormal, infinite, NaN, zeros.
-fn points(random: &mut Random, count: usize) -> Vec<[f64; 3]> {
-    (0..count).map(|_| [random.double(), random.double(), random.double()]).collect()
-}
+use values::{bits, points, values_agree};
 
 #[test]
 fn every_operation_has_its_value() {
@@ -63,7 +26,7 @@ fn every_operation_has_its_value() {
         // Equal operands, and zeros of both signs.
         points.extend((0..20).map(|_| [random.double(); 3]));
         points.extend([[0.0, -0.0, 1.0], [-0.0, 0.0, 1.0], [f64::NAN, 1.0, 2.0], [1.0, f64::NAN, 2.0]]);
-        check(&program, &points);
+        values_agree(&program, &points);
     }
 }
 
@@ -72,9 +35,9 @@ fn variables_constants_and_repeated_outputs_are_outputs_too() {
     let mut program = Program::new();
     let (z, zero) = (program.variable(Axis::Z), program.literal(-0.0));
     program.set_outputs(vec![z, zero, z]);
-    check(&program, &points(&mut Random::new(2), 10));
+    values_agree(&program, &points(&mut Random::new(2), 10));
     program.set_outputs(Vec::new());
-    check(&program, &points(&mut Random::new(2), 10));
+    values_agree(&program, &points(&mut Random::new(2), 10));
 }
 
 #[test]
@@ -93,7 +56,7 @@ fn live_values_survive_calls() {
         sum = program.apply(Operation::Add, &[quotient, value]);
     }
     program.set_outputs(vec![sum, values[9]]);
-    check(&program, &points(&mut Random::new(3), 100));
+    values_agree(&program, &points(&mut Random::new(3), 100));
 }
 
 #[test]
@@ -106,7 +69,7 @@ fn batches_of_any_length_agree() {
         let quotient = program.apply(operation, &[product, y]);
         program.set_outputs(vec![quotient, product]);
         for length in 0..=points.len() {
-            check(&program, &points[..length]);
+            values_agree(&program, &points[..length]);
         }
     }
 }
@@ -118,8 +81,8 @@ fn random_programs_agree() {
         let operations = 1 + random.below(60);
         let program = random.program(operations);
         let points = points(&mut random, 25);
-        check(&program, &points);
-        check(&program.with_gradient(), &points);
+        values_agree(&program, &points);
+        values_agree(&program.with_gradient(), &points);
     }
 }
 
@@ -128,7 +91,7 @@ fn programs_that_spill_agree() {
     let mut random = Random::new(6);
     for width in [20, 100, 1500] {
         let program = random.wide_program(width);
-        check(&program, &points(&mut random, 30));
+        values_agree(&program, &points(&mut random, 30));
     }
 }
 

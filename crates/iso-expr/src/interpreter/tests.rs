@@ -1,8 +1,8 @@
 use super::Interpreter;
-use crate::engine::{Boxes, Enclosures, Points};
+use crate::engine::Points;
 use crate::program::reference::assert_same;
 use crate::random::Random;
-use crate::{Axis, Decorated, Decoration, Engine, Interval, Node, NodeId, Operation, Program, Scratch};
+use crate::{Axis, Engine, Operation, Program, Scratch};
 
 /// Every kernel over points gives what the definition gives, at `points` taken as one batch.
 fn check_points(program: &Program, scratch: &mut Scratch, points: &[[f64; 3]]) {
@@ -76,95 +76,4 @@ fn a_hundred_thousand_operations_work() {
     let cheap = [Operation::Add, Operation::Multiply, Operation::Minimum, Operation::IntegerPower];
     let program = random.program_of(100_000, &cheap);
     check_points(&program, &mut Scratch::default(), &points(&mut random, 20));
-}
-
-/// What the interpreter's box kernel gives for the program's outputs, box by box.
-fn enclose(program: &Program, scratch: &mut Scratch, boxes: &[[Interval; 3]]) -> Vec<Vec<Decorated>> {
-    let ends = |end: fn(&Interval) -> f64| {
-        Axis::ALL.map(|axis| boxes.iter().map(|sides| end(&sides[axis as usize])).collect::<Vec<_>>())
-    };
-    let (lo, hi) = (ends(|side| side.lo), ends(|side| side.hi));
-    let count = boxes.len() * program.outputs().len();
-    let (mut low, mut high, mut decoration) =
-        (vec![0.5; count], vec![0.5; count], vec![Decoration::Common; count]);
-    Interpreter.boxes(program).unwrap().evaluate(
-        scratch,
-        Boxes { lo: lo.each_ref().map(Vec::as_slice), hi: hi.each_ref().map(Vec::as_slice) },
-        Enclosures { lo: &mut low, hi: &mut high, decoration: &mut decoration },
-    );
-    let enclosure = |place: usize| Decorated {
-        interval: Interval { lo: low[place], hi: high[place] },
-        decoration: decoration[place],
-    };
-    (0..boxes.len()).map(|index| (index..count).step_by(boxes.len()).map(enclosure).collect()).collect()
-}
-
-/// Whether doubles go on at `point` where real numbers are undefined, so that nothing is promised of them: an operation on
-/// the way gives no finite number, or the angle of the origin.
-fn is_undefined(program: &Program, point: [f64; 3]) -> bool {
-    let values = program.evaluate_nodes(point);
-    let is_zero = |operand: &NodeId| values[operand.index()] == 0.0;
-    let is_angle_of_origin = |node: &Node| match node {
-        Node::Apply(Operation::Atan2, operands) => operands.iter().all(is_zero),
-        _ => false,
-    };
-    !values.iter().all(|value| value.is_finite()) || program.nodes().iter().any(is_angle_of_origin)
-}
-
-/// Random points of random boxes have their values inside the enclosures of `program`'s outputs. Gives how many were checked.
-fn check_boxes(random: &mut Random, scratch: &mut Scratch, program: &Program) -> usize {
-    let boxes: Vec<_> = (0..6).map(|_| [(); 3].map(|()| random.argument().interval)).collect();
-    let mut checked = 0;
-    for (sides, enclosures) in boxes.iter().zip(enclose(program, scratch, &boxes)) {
-        for _ in 0..8 {
-            if sides.iter().any(|side| side.is_empty()) {
-                continue;
-            }
-            let point = sides.map(|side| random.inside(side));
-            if is_undefined(program, point) {
-                continue;
-            }
-            for (enclosure, value) in enclosures.iter().zip(program.evaluate(point)) {
-                let Decorated { interval, .. } = enclosure;
-                let (holds, sides) = (interval.contains(value), sides);
-                assert!(holds, "{value:?} at {point:?} is outside {interval:?} over {sides:?}\n{program}");
-                checked += 1;
-            }
-        }
-    }
-    checked
-}
-
-#[test]
-fn enclosures_hold_the_values_at_points_of_their_boxes() {
-    let mut random = Random::new(6);
-    let mut scratch = Scratch::default();
-    let mut checked = 0;
-    for _ in 0..2000 {
-        let operations = random.below(20);
-        let program = random.program(operations).pruned();
-        for program in [&program, &program.simplified(), &program.with_gradient()] {
-            checked += check_boxes(&mut random, &mut scratch, program);
-        }
-    }
-    assert!(checked > 20_000, "only {checked} values were finite");
-}
-
-#[test]
-fn enclosures_do_not_depend_on_their_neighbours() {
-    let mut random = Random::new(7);
-    let mut scratch = Scratch::default();
-    let bits = |enclosures: &[Decorated]| -> Vec<_> {
-        let ends = |enclosure: &Decorated| [enclosure.interval.lo.to_bits(), enclosure.interval.hi.to_bits()];
-        enclosures.iter().map(|enclosure| (ends(enclosure), enclosure.decoration)).collect()
-    };
-    for _ in 0..200 {
-        let program = random.program(15).with_gradient();
-        let boxes: Vec<_> = (0..9).map(|_| [(); 3].map(|()| random.argument().interval)).collect();
-        let together = enclose(&program, &mut scratch, &boxes);
-        for (sides, enclosures) in boxes.iter().zip(together) {
-            let alone = enclose(&program, &mut scratch, &[*sides]);
-            assert_eq!(bits(&enclosures), bits(&alone[0]), "over {sides:?} of\n{program}");
-        }
-    }
 }

@@ -4,7 +4,7 @@ mod display;
 mod gradient;
 mod powers;
 mod rebuild;
-#[cfg(test)]
+#[cfg(any(test, feature = "random"))]
 pub(crate) mod reference;
 mod rounding;
 mod simplify;

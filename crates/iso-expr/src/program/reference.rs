@@ -4,14 +4,14 @@ use super::{Node, Program};
 use crate::Value;
 
 impl Program {
-    /// The outputs at `point`.
-    pub(crate) fn evaluate(&self, point: [f64; 3]) -> Vec<f64> {
+    /// The outputs at `point`, by the table alone.
+    pub fn evaluate(&self, point: [f64; 3]) -> Vec<f64> {
         let values = self.evaluate_nodes(point);
         self.outputs.iter().map(|output| values[output.index()]).collect()
     }
 
     /// Every node at `point`, in turn by the table's value.
-    pub(crate) fn evaluate_nodes(&self, point: [f64; 3]) -> Vec<f64> {
+    pub fn evaluate_nodes(&self, point: [f64; 3]) -> Vec<f64> {
         let mut values: Vec<f64> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
             values.push(match node {
@@ -32,6 +32,7 @@ impl Program {
 }
 
 /// Panics unless both are NaN or have the same bits.
+#[cfg(test)]
 #[track_caller]
 pub(crate) fn assert_same(given: f64, expected: f64, context: impl Fn() -> String) {
     let same = given.to_bits() == expected.to_bits() || (given.is_nan() && expected.is_nan());

@@ -1,0 +1,54 @@
+//! What holds of any program over any boxes: native code gives the interpreter's enclosures, ends bit for bit and
+//! decorations.
+
+use iso_expr::engine::{Boxes, Enclosures};
+use iso_expr::random::Random;
+use iso_expr::{Decorated, Decoration, Engine, Interpreter, Program, Scratch};
+use iso_jit::Jit;
+
+/// The enclosures of all outputs over all boxes, as bits, any NaN counting as one.
+fn enclosures(
+    engine: &dyn Engine,
+    program: &Program,
+    boxes: &[[Decorated; 3]],
+) -> Vec<(u64, u64, Decoration)> {
+    let ends = |end: fn(&Decorated) -> f64| {
+        [0, 1, 2].map(|axis| boxes.iter().map(|ranges| end(&ranges[axis])).collect::<Vec<_>>())
+    };
+    let (lo, hi) = (ends(|range| range.interval.lo), ends(|range| range.interval.hi));
+    let count = program.outputs().len() * boxes.len();
+    let (mut output_lo, mut output_hi) = (vec![7.0; count], vec![7.0; count]);
+    let mut decoration = vec![Decoration::Defined; count];
+    engine.boxes(program).unwrap().evaluate(
+        &mut Scratch::default(),
+        Boxes { lo: lo.each_ref().map(|ends| &ends[..]), hi: hi.each_ref().map(|ends| &ends[..]) },
+        Enclosures { lo: &mut output_lo, hi: &mut output_hi, decoration: &mut decoration },
+    );
+    let bits = |value: f64| if value.is_nan() { f64::NAN.to_bits() } else { value.to_bits() };
+    let ends = output_lo.into_iter().zip(output_hi).map(|(lo, hi)| (bits(lo), bits(hi)));
+    ends.zip(decoration).map(|((lo, hi), decoration)| (lo, hi, decoration)).collect()
+}
+
+/// Native code gives the interpreter's enclosures over `boxes`.
+pub(crate) fn enclosures_agree(jit: &Jit, program: &Program, boxes: &[[Decorated; 3]]) {
+    let native = enclosures(jit, program, boxes);
+    let expected = enclosures(&Interpreter, program, boxes);
+    for (place, (native, expected)) in native.iter().zip(&expected).enumerate() {
+        let show = |(lo, hi, decoration): &(u64, u64, Decoration)| {
+            format!("[{:e}, {:e}] {decoration:?}", f64::from_bits(*lo), f64::from_bits(*hi))
+        };
+        let ranges = boxes[place % boxes.len()];
+        assert_eq!(
+            native,
+            expected,
+            "{} is not {} over {ranges:?} in\n{program}",
+            show(native),
+            show(expected)
+        );
+    }
+}
+
+/// Boxes with sides of every kind.
+pub(crate) fn boxes(random: &mut Random, count: usize) -> Vec<[Decorated; 3]> {
+    (0..count).map(|_| [random.argument(), random.argument(), random.argument()]).collect()
+}
