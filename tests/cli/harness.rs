@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 
 use tempfile::TempDir;
 
@@ -51,14 +51,40 @@ impl Case {
 
     /// Runs `iso` with arguments and something to read on standard input.
     pub(crate) fn run_with_input<A: AsRef<OsStr>>(&self, arguments: &[A], input: &[u8]) -> Run {
+        let mut started = self.start(arguments);
+        // A run that fails early does not read its input: that is no error of the test.
+        let _ = started.child.stdin.take().expect("standard input is piped").write_all(input);
+        started.end()
+    }
+
+    /// Starts `iso` with arguments.
+    pub(crate) fn start<A: AsRef<OsStr>>(&self, arguments: &[A]) -> Started {
         let mut command = Command::new(env!("CARGO_BIN_EXE_iso"));
         command.args(arguments).current_dir(self.folder.path());
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut child = command.spawn().expect("iso can be started");
-        // A run that fails early does not read its input: that is no error of the test.
-        let _ = child.stdin.take().expect("standard input is piped").write_all(input);
-        let output = child.wait_with_output().expect("iso ends");
-        Run { command: format!("{command:?}"), output }
+        let child = command.spawn().expect("iso can be started");
+        Started { command: format!("{command:?}"), child }
+    }
+}
+
+/// A run that goes on.
+pub(crate) struct Started {
+    command: String,
+    child: Child,
+}
+
+impl Started {
+    /// Sends the signal of Ctrl-C.
+    #[cfg(unix)]
+    pub(crate) fn interrupt(&self) {
+        let sent = Command::new("kill").args(["-INT", &self.child.id().to_string()]).status();
+        assert!(sent.expect("kill can be started").success(), "{} ended early", self.command);
+    }
+
+    /// Waits for the end.
+    pub(crate) fn end(self) -> Run {
+        let output = self.child.wait_with_output().expect("iso ends");
+        Run { command: self.command, output }
     }
 }
 
@@ -76,6 +102,11 @@ impl Run {
             self.fail(&format!("expected the exit code {code}"));
         }
         self
+    }
+
+    /// The exit code; `None` when a signal ended the run.
+    pub(crate) fn code(&self) -> Option<i32> {
+        self.output.status.code()
     }
 
     /// Standard output.

@@ -5,6 +5,7 @@ mod harness;
 mod eval;
 mod explain;
 mod formulas;
+mod limits;
 mod render;
 mod stress;
 mod trace;

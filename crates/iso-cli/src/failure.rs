@@ -10,6 +10,7 @@ use iso_render::{CameraError, EncodeError, RenderError};
 use thiserror::Error;
 
 use crate::formula::Source;
+use crate::interruption::{Cause, INTERRUPTED};
 use crate::table::TableError;
 
 /// Why a command failed.
@@ -68,6 +69,27 @@ pub(crate) enum Failure {
         /// How many.
         promises: usize,
     },
+    /// Work ended before it was done, and what is finished is written.
+    #[error("{cause}: {unfinished} of {all} {things} are unfinished, and marked so in what is written")]
+    Stopped {
+        /// Why.
+        cause: Cause,
+        /// Pixels or rays that are not finished.
+        unfinished: u64,
+        /// Pixels or rays in all.
+        all: u64,
+        /// Whether these are pixels or rays.
+        things: &'static str,
+    },
+    /// Work ended before anything was finished, and nothing is written.
+    #[error("{cause} before anything was finished; nothing is written")]
+    StoppedEarly {
+        /// Why.
+        cause: Cause,
+    },
+    /// Ctrl-C cannot be listened to.
+    #[error("cannot listen to Ctrl-C: {0}")]
+    CtrlC(ctrlc::Error),
     /// The threads cannot be started.
     #[error("cannot start the threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -84,7 +106,8 @@ impl Failure {
         Self::Usage { problem: problem.into(), help: Some(help.into()) }
     }
 
-    /// 2 for what the user can mend in what was given: flags, formula, tables; 1 for the rest.
+    /// 2 for what the user can mend in what was given: flags, formula, tables; 3 for a time limit and 130 for Ctrl-C; 1 for
+    /// the rest.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
             Self::Usage { .. }
@@ -92,6 +115,10 @@ impl Failure {
             | Self::Camera(_)
             | Self::Table(_)
             | Self::Read { .. } => 2,
+            Self::Stopped { cause, .. } | Self::StoppedEarly { cause } => match cause {
+                Cause::TimeLimit(_) => 3,
+                Cause::CtrlC => INTERRUPTED,
+            },
             _ => 1,
         }
     }

@@ -12,6 +12,7 @@ mod failure;
 mod flags;
 mod formula;
 mod hints;
+mod interruption;
 mod method;
 mod output;
 mod pictures;
@@ -42,6 +43,7 @@ fn main() -> ExitCode {
 }
 
 fn run(command: Command) -> Result<(), Failure> {
+    interruption::listen()?;
     match command {
         Command::Render(flags) => commands::render::run(*flags),
         Command::Eval(flags) => commands::eval::run(flags),

@@ -4,10 +4,26 @@ use std::error::Error;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::process;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::NamedTempFile;
 
 use crate::failure::Failure;
+
+/// Held while there is a file that is not yet whole.
+static UNFINISHED_FILE: Mutex<()> = Mutex::new(());
+
+fn hold_unfinished_file() -> MutexGuard<'static, ()> {
+    // A panic while a file was written left nothing to protect.
+    UNFINISHED_FILE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Ends the program, but not before a file that is being written is whole.
+pub(crate) fn exit_between_files(code: u8) -> ! {
+    let _held = hold_unfinished_file();
+    process::exit(code.into())
+}
 
 /// Where the results of a command go.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -71,6 +87,7 @@ impl OutputFile {
             Err(_) => Place::Replaced(path.clone()),
         };
         if let Place::Replaced(target) = &place {
+            let _held = hold_unfinished_file();
             temporary_beside(target).map_err(|error| Failure::write(&path, error))?;
         }
         Ok(Self { path, place })
@@ -98,6 +115,7 @@ impl OutputFile {
         match &self.place {
             Place::Stream => filled(File::create(&self.path).map_err(unwritable)?),
             Place::Replaced(target) => {
+                let _held = hold_unfinished_file();
                 let temporary = temporary_beside(target).map_err(unwritable)?;
                 filled(temporary.reopen().map_err(unwritable)?)?;
                 temporary.persist(target).map_err(|error| unwritable(error.error))?;

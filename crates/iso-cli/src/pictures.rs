@@ -90,8 +90,10 @@ fn write_points(picture: &Picture, writer: &mut dyn Write) -> io::Result<()> {
     for (row, column) in (0..height).flat_map(|row| (0..width).map(move |column| (row, column))) {
         let pixel = picture.size.offset(column, row);
         let (point, normal) = (picture.points[pixel], picture.normals[pixel]);
-        let head = [column.to_string(), row.to_string(), status_name(picture.statuses[pixel]).to_owned()];
+        let status = picture.statuses[pixel];
+        let head = [column.to_string(), row.to_string(), status_name(status).to_owned()];
         let numbers = [picture.depth[pixel], point.x, point.y, point.z, normal.x, normal.y, normal.z];
+        let numbers = if status == Status::Unfinished { [f64::NAN; 7] } else { numbers };
         write_row(writer, head.into_iter().chain(numbers.map(digits)))?;
     }
     Ok(())
@@ -104,5 +106,6 @@ pub(crate) fn status_name(status: Status) -> &'static str {
         Status::Touch => "touch",
         Status::Miss => "miss",
         Status::Undecided => "undecided",
+        Status::Unfinished => "unfinished",
     }
 }

@@ -58,9 +58,13 @@ impl Summary {
             ("shade", milliseconds.shade),
             ("encode", milliseconds.encode),
         ];
+        let unfinished = match pixels.unfinished {
+            0 => String::new(),
+            count => format!(", {count} unfinished"),
+        };
         let times = times.map(|(phase, time)| format!("{phase} {time:.1}")).join(", ");
         format!(
-            "{}: {}x{} pixels: {} hit, {} touch, {} miss, {} undecided; {total:.1} ms ({times})",
+            "{}: {}x{} pixels: {} hit, {} touch, {} miss, {} undecided{unfinished}; {total:.1} ms ({times})",
             self.files.join(", "),
             self.width,
             self.height,

@@ -1,6 +1,7 @@
 //! Values of flags, from text to types. Clap turns their errors into reports that name the flag.
 
 use std::str::FromStr;
+use std::time::Duration;
 
 use glam::DVec3;
 use iso_grid::Region;
@@ -71,6 +72,21 @@ pub(crate) fn smoothing(text: &str) -> Result<Smoothing, String> {
         .ok_or_else(|| format!("1 to {} pixels can be averaged each way", Smoothing::MOST))
 }
 
+/// A time: a number above zero with its unit, `ms`, `s`, `m` or `h`; seconds where there is none.
+pub(crate) fn duration(text: &str) -> Result<Duration, String> {
+    let text = text.trim();
+    let unit = text.trim_start_matches(|character: char| !character.is_ascii_alphabetic());
+    let seconds = match unit {
+        "" | "s" => 1.0,
+        "ms" => 1e-3,
+        "m" => 60.0,
+        "h" => 3600.0,
+        other => return Err(format!("expected a time such as 90s, 1.5m or 200ms, found the unit `{other}`")),
+    };
+    let count = positive(&text[..text.len() - unit.len()])?;
+    Duration::try_from_secs_f64(count * seconds).map_err(|error| error.to_string())
+}
+
 /// A value for a parameter of the formula.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Setting {
@@ -125,6 +141,18 @@ mod tests {
         assert_eq!(plain("640x480"), Ok((640, 480)));
         for wrong in ["", "0x4", "4x", "4x4x4", "-4x4", "1e3x1e3", "99999x99999"] {
             assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_time_has_a_unit_or_means_seconds() {
+        for (text, milliseconds) in
+            [("2", 2000), ("1.5s", 1500), ("200ms", 200), ("0.5m", 30_000), ("1 h", 3_600_000)]
+        {
+            assert_eq!(duration(text), Ok(Duration::from_millis(milliseconds)), "{text}");
+        }
+        for wrong in ["", "s", "0", "-1s", "1d", "1e400", "1e300h", "nan", "inf", "1s2"] {
+            assert!(duration(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -78,7 +78,8 @@ impl Picture {
         Ok(())
     }
 
-    /// Writes the depths as the one 32-bit float channel `Z` of an OpenEXR file; NaN where nothing was found.
+    /// Writes the depths as the one 32-bit float channel `Z` of an OpenEXR file; NaN where nothing was found,
+    /// −∞ where pixels are unfinished.
     ///
     /// # Errors
     /// When writing fails.
@@ -90,7 +91,7 @@ impl Picture {
     }
 
     /// Writes the normals as the three 32-bit float channels `N.X`, `N.Y` and `N.Z` of an OpenEXR file; NaN where there
-    /// is none.
+    /// is none, zero where pixels are unfinished.
     ///
     /// # Errors
     /// When writing fails.
@@ -143,6 +144,7 @@ mod tests {
         let all = Layers { color: true, depth: true, normals: true, points: false, statuses: false };
         let mut picture = Picture::with_room(Size::new(3, 2).unwrap(), all).unwrap();
         picture.color = (0..6).map(|pixel| [pixel, 40 * pixel, 255 - pixel]).collect();
+        picture.depth = vec![f64::NAN; 6];
         picture.depth[4] = 1.25;
         picture.normals[4] = DVec3::new(0.0, -0.6, 0.8);
         picture

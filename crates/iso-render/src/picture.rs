@@ -17,6 +17,8 @@ pub enum Status {
     Miss,
     /// The method could not decide.
     Undecided,
+    /// Work was stopped before the pixel was finished.
+    Unfinished,
 }
 
 impl From<&Outcome> for Status {
@@ -41,6 +43,8 @@ pub struct StatusCounts {
     pub miss: u64,
     /// Pixels that the method could not decide.
     pub undecided: u64,
+    /// Pixels that were not finished when work was stopped.
+    pub unfinished: u64,
 }
 
 impl StatusCounts {
@@ -51,6 +55,7 @@ impl StatusCounts {
             Status::Touch => self.touch += 1,
             Status::Miss => self.miss += 1,
             Status::Undecided => self.undecided += 1,
+            Status::Unfinished => self.unfinished += 1,
         }
     }
 }
@@ -61,6 +66,7 @@ impl std::ops::AddAssign for StatusCounts {
         self.touch += other.touch;
         self.miss += other.miss;
         self.undecided += other.undecided;
+        self.unfinished += other.unfinished;
     }
 }
 
@@ -90,20 +96,20 @@ impl Layers {
     }
 }
 
-/// A finished picture: the layers that were asked for, rows from top to bottom, and what they took.
+/// A picture: the layers that were asked for, rows from top to bottom, and what they took.
 ///
-/// Layers that were not asked for are empty.
+/// Layers that were not asked for are empty. Each layer has a mark for pixels that are [`Status::Unfinished`].
 #[derive(Clone, Debug)]
 pub struct Picture {
     /// Width and height.
     pub size: Size,
-    /// Red, green and blue bytes in sRGB.
+    /// Red, green and blue bytes in sRGB; [`Picture::UNFINISHED`] where pixels are unfinished.
     pub color: Vec<[u8; 3]>,
-    /// The distance t along each ray; NaN where nothing was found.
+    /// The distance t along each ray; NaN where nothing was found, −∞ where pixels are unfinished.
     pub depth: Vec<f64>,
-    /// Unit normals towards larger F; NaN where nothing was found.
+    /// Unit normals towards larger F; NaN where nothing was found, zero where pixels are unfinished.
     pub normals: Vec<DVec3>,
-    /// Points of the surface; NaN where nothing was found.
+    /// Points of the surface; NaN where nothing was found or pixels are unfinished.
     pub points: Vec<DVec3>,
     /// The status of each pixel.
     pub statuses: Vec<Status>,
@@ -119,16 +125,19 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture with room for `layers`; `None` when memory does not suffice.
+    /// The colour of unfinished pixels: black, which no lit surface and no background is.
+    pub const UNFINISHED: [u8; 3] = [0; 3];
+
+    /// A picture with room for `layers`, all of it unfinished; `None` when memory does not suffice.
     pub(crate) fn with_room(size: Size, layers: Layers) -> Option<Self> {
         Some(Self {
             size,
-            color: filled(layers.color, size, [0; 3])?,
-            depth: filled(layers.depth, size, f64::NAN)?,
-            normals: filled(layers.normals, size, DVec3::NAN)?,
+            color: filled(layers.color, size, Self::UNFINISHED)?,
+            depth: filled(layers.depth, size, f64::NEG_INFINITY)?,
+            normals: filled(layers.normals, size, DVec3::ZERO)?,
             points: filled(layers.points, size, DVec3::NAN)?,
-            statuses: filled(layers.statuses, size, Status::Miss)?,
-            counts: StatusCounts::default(),
+            statuses: filled(layers.statuses, size, Status::Unfinished)?,
+            counts: StatusCounts { unfinished: size.pixels() as u64, ..StatusCounts::default() },
             counters: Counters::default(),
             trace_seconds: 0.0,
             shade_seconds: 0.0,

@@ -47,6 +47,9 @@ const TILE: u32 = 64;
 ///
 /// The picture is the same bit for bit whatever the number of threads.
 ///
+/// When the surface's [`Stop`](iso_grid::Stop) is requested, this returns soon: tiles that are finished by then are part of
+/// the picture, and all other pixels are unfinished.
+///
 /// # Errors
 /// When memory does not suffice or a kernel cannot be compiled.
 pub fn render(
@@ -59,7 +62,7 @@ pub fn render(
     let picture = Picture::with_room(size, layers).ok_or(RenderError::OutOfMemory(size))?;
     let finished = Mutex::new(Finished { picture, pixels: 0, trace: Duration::ZERO, shade: Duration::ZERO });
     tiles(size).into_par_iter().try_for_each_init(Workspace::default, |workspace, area| {
-        let tile = Tile::render(scene, size, layers, area, workspace)?;
+        let Some(tile) = Tile::render(scene, size, layers, area, workspace)? else { return Ok(()) };
         let mut finished = finished.lock().expect("no thread panics while it holds the picture");
         finished.take(&tile);
         progress(finished.pixels, size.pixels() as u64);
@@ -106,13 +109,18 @@ struct Tile {
 }
 
 impl Tile {
+    /// `None` when work was stopped before the tile was finished.
     fn render(
         scene: &Scene<'_>,
         size: Size,
         layers: Layers,
         area: Area,
         workspace: &mut Workspace,
-    ) -> Result<Self, RenderError> {
+    ) -> Result<Option<Self>, RenderError> {
+        let stop = scene.surface.stop();
+        if stop.is_requested() {
+            return Ok(None);
+        }
         let start = Instant::now();
         let pixels = || {
             (area.row..area.row + area.height)
@@ -122,6 +130,9 @@ impl Tile {
         let mut outcomes = vec![Outcome::Miss; rays.len()];
         workspace.counters = Counters::default();
         scene.tracer.trace_tile(workspace, area.width as usize, &rays, &mut outcomes);
+        if stop.is_requested() {
+            return Ok(None);
+        }
         let traced = Instant::now();
 
         let mut found_normals = Vec::new();
@@ -138,7 +149,7 @@ impl Tile {
         }
         let (trace, shade) = (traced - start, traced.elapsed());
         let counters = workspace.counters;
-        Ok(Self { area, layers, rays, outcomes, normals: found_normals, color, counters, trace, shade })
+        Ok(Some(Self { area, layers, rays, outcomes, normals: found_normals, color, counters, trace, shade }))
     }
 
     /// The point found at a place of the tile; `None` where nothing was.
@@ -187,6 +198,7 @@ impl Finished {
         let mut counts = StatusCounts::default();
         tile.outcomes.iter().for_each(|outcome| counts.count(Status::from(outcome)));
         picture.counts += counts;
+        picture.counts.unfinished -= tile.outcomes.len() as u64;
         picture.counters += tile.counters;
         self.pixels += tile.outcomes.len() as u64;
         self.trace += tile.trace;

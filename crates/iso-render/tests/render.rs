@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use iso_expr::{Axis, Interpreter, NodeId, Operation, Program};
-use iso_grid::{Certified, Region, Surface};
-use iso_render::{Camera, Layers, Picture, Projection, Scene, Shading, Size, Status, View, render};
+use iso_grid::{Certified, Region, Stop, Surface};
+use iso_render::{
+    Camera, Layers, Picture, Projection, Scene, Shading, Size, Status, StatusCounts, View, render,
+};
 
 const ALL: Layers = Layers { color: true, depth: true, normals: true, points: true, statuses: true };
 
@@ -29,9 +31,14 @@ fn sphere() -> Program {
 
 /// The sphere from the front, two pixels to a tenth of its radius.
 fn picture(size: Size, threads: usize) -> Picture {
+    picture_until(&Stop::default(), size, threads, u64::MAX)
+}
+
+/// The same, but `stop` is requested when so many pixels are done.
+fn picture_until(stop: &Stop, size: Size, threads: usize, last: u64) -> Picture {
     let program = sphere();
     let gradient = program.with_gradient();
-    let surface = Surface::new(Arc::new(Interpreter), program, gradient);
+    let surface = Surface::new(Arc::new(Interpreter), program, gradient).stopped_by(stop.clone());
     let region = Region::new(DVec3::splat(-1.5), DVec3::splat(1.5)).unwrap();
     let tracer = Certified::new(&surface, region).unwrap();
     let view = View::Orbit { yaw: 0.0, pitch: 0.0, distance: Some(5.0) };
@@ -40,7 +47,12 @@ fn picture(size: Size, threads: usize) -> Picture {
     let shading = Shading::new(&camera, false);
     let scene = Scene { surface: &surface, tracer: &tracer, camera: &camera, shading: &shading };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| render(&scene, size, ALL, &|_, _| {})).unwrap()
+    let progress = |done, _| {
+        if done >= last {
+            stop.request();
+        }
+    };
+    pool.install(|| render(&scene, size, ALL, &progress)).unwrap()
 }
 
 #[test]
@@ -90,4 +102,27 @@ fn the_upper_left_of_a_sphere_is_brighter_than_the_lower_right() {
     let picture = picture(size, 1);
     let brightness = |column, row| picture.color[size.offset(column, row)].map(u32::from).iter().sum::<u32>();
     assert!(brightness(22, 22) > brightness(37, 37) + 100);
+}
+
+#[test]
+fn unfinished_pixels_are_marked_in_every_layer_and_finished_ones_are_as_ever() {
+    let size = Size::new(200, 130).unwrap();
+    let (whole, part) = (picture(size, 1), picture_until(&Stop::default(), size, 1, 2 * 64 * 64));
+    let mut counts = StatusCounts::default();
+    for pixel in 0..size.pixels() {
+        counts.count(part.statuses[pixel]);
+        if part.statuses[pixel] == Status::Unfinished {
+            assert_eq!(part.color[pixel], Picture::UNFINISHED);
+            assert_eq!((part.depth[pixel], part.normals[pixel]), (f64::NEG_INFINITY, DVec3::ZERO));
+            assert!(part.points[pixel].is_nan());
+        } else {
+            assert_eq!(part.statuses[pixel], whole.statuses[pixel]);
+            assert_eq!(part.depth[pixel].to_bits(), whole.depth[pixel].to_bits());
+            assert_eq!(part.color[pixel], whole.color[pixel]);
+            assert_ne!(part.color[pixel], Picture::UNFINISHED);
+        }
+    }
+    assert_eq!(counts, part.counts);
+    assert_eq!(counts.unfinished, size.pixels() as u64 - 2 * 64 * 64);
+    assert_eq!(whole.counts.unfinished, 0);
 }

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::sync::Arc;
 
 use iso_expr::Engine;
-use iso_grid::{Counters, Region, Surface};
+use iso_grid::{Counters, GridError, Region, Surface};
 use iso_render::{Picture, Scene, Shading, Size, Smoothing, render};
 use rayon::ThreadPool;
 
@@ -14,6 +14,7 @@ use crate::engine::{engine, threads};
 use crate::failure::Failure;
 use crate::flags::{CameraFlags, RenderFlags};
 use crate::formula::{Programs, Source, minus_level};
+use crate::interruption::Interruption;
 use crate::method::{Method, region};
 use crate::output::to_standard_output;
 use crate::pictures::PictureFiles;
@@ -26,14 +27,14 @@ pub(crate) fn run(flags: RenderFlags) -> Result<(), Failure> {
     let request = Request::resolve(flags, &mut phases)?;
     let summary = request.fulfil(phases)?;
     match request.speech {
-        Speech::Json => to_standard_output(|writer| summary.write_json(writer)),
+        Speech::Json => to_standard_output(|writer| summary.write_json(writer))?,
         Speech::Line => {
             // The picture is done: a summary that nobody can read does not spoil it.
             let _ = writeln!(io::stderr(), "{}", summary.line());
-            Ok(())
         }
-        Speech::Nothing => Ok(()),
+        Speech::Nothing => {}
     }
+    request.interruption.check(summary.pixels.unfinished, request.drawn.pixels() as u64, "pixels")
 }
 
 /// What is to be drawn, how, and where it goes: all that flags and files say, checked.
@@ -50,6 +51,7 @@ struct Request {
     speech: Speech,
     engine: Arc<dyn Engine>,
     threads: ThreadPool,
+    interruption: Interruption,
 }
 
 /// What is said when the picture is done.
@@ -62,6 +64,7 @@ enum Speech {
 
 impl Request {
     fn resolve(flags: RenderFlags, phases: &mut Phases) -> Result<Self, Failure> {
+        let interruption = Interruption::new(&flags.limit);
         let method = Method::resolve(&flags.method)?;
         let smoothing = flags.output.smooth;
         let files = PictureFiles::resolve(&flags.output)?;
@@ -89,12 +92,13 @@ impl Request {
             speech,
             engine: add_to(&mut phases.compile, || engine(flags.engine.engine))?,
             threads: threads(&flags.threads)?,
+            interruption,
         })
     }
 
     /// Draws the picture and writes its files.
     fn fulfil(&self, mut phases: Phases) -> Result<Summary, Failure> {
-        let surface = self.programs.surface(Arc::clone(&self.engine));
+        let surface = self.programs.surface(Arc::clone(&self.engine)).stopped_by(self.interruption.stop());
         add_to(&mut phases.compile, || self.method.compile(&surface))?;
         let region = add_to(&mut phases.preprocess, || region(self.region, &surface))?;
         let (picture, preprocessing) = self.threads.install(|| self.draw(&surface, region, &mut phases))?;
@@ -126,7 +130,8 @@ impl Request {
         phases: &mut Phases,
     ) -> Result<(Picture, Counters), Failure> {
         let camera = camera(&self.camera, &region, self.drawn)?;
-        let tracer = add_to(&mut phases.preprocess, || self.method.prepare(surface, region))?;
+        let tracer = add_to(&mut phases.preprocess, || self.method.prepare(surface, region))
+            .map_err(|error| self.interruption.explain(error))?;
         let shading = Shading::new(&camera, self.shows_status);
         let scene = Scene { surface, tracer: tracer.as_ref(), camera: &camera, shading: &shading };
         let progress = Progress::new(self.speech == Speech::Line);
@@ -134,6 +139,9 @@ impl Request {
         let picture = render(&scene, self.drawn, self.files.layers(), &report);
         progress.finish();
         let mut picture = picture?;
+        if picture.counts.unfinished == self.drawn.pixels() as u64 {
+            return Err(self.interruption.explain(GridError::Stopped));
+        }
         add_to(&mut phases.shade, || self.smoothing.finish(&mut picture));
         phases.trace += 1e3 * picture.trace_seconds;
         phases.shade += 1e3 * picture.shade_seconds;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use iso_expr::CompileError;
-use iso_grid::{Outcome, Ray, Surface, Tracer, Workspace, normals};
+use iso_grid::{GridError, Outcome, Ray, Surface, Tracer, Workspace, normals};
 use iso_render::Status;
 use rayon::prelude::*;
 
@@ -13,6 +13,7 @@ use crate::engine::{engine, threads};
 use crate::failure::Failure;
 use crate::flags::TraceFlags;
 use crate::formula::{Programs, minus_level, understand};
+use crate::interruption::Interruption;
 use crate::method::{Method, region};
 use crate::output::Destination;
 use crate::pictures::status_name;
@@ -23,22 +24,27 @@ const BATCH: usize = 1024;
 
 /// Follows the rays of a table.
 pub(crate) fn run(flags: TraceFlags) -> Result<(), Failure> {
+    let interruption = Interruption::new(&flags.limit);
     let method = Method::resolve(&flags.method)?;
     let destination = Destination::new(flags.tables.output)?;
     let formula = understand(&flags.formula)?;
     let programs = Programs::new(&minus_level(&formula, flags.level.level)?);
     let rays = read_rays(&flags.tables.rays)?;
-    let surface = programs.surface(engine(flags.engine.engine)?);
+    let surface = programs.surface(engine(flags.engine.engine)?).stopped_by(interruption.stop());
     let followed = threads(&flags.threads)?.install(|| {
-        let tracer = method.prepare(&surface, region(flags.method.region, &surface)?)?;
+        let region = region(flags.method.region, &surface)?;
+        let tracer = method.prepare(&surface, region).map_err(|error| interruption.explain(error))?;
         Ok::<_, Failure>(follow(&surface, tracer.as_ref(), &rays)?)
     })?;
+    let unfinished = followed.iter().filter(|end| end.is_none()).count();
+    if unfinished > 0 && unfinished == rays.len() {
+        return Err(interruption.explain(GridError::Stopped));
+    }
     destination.write(|writer| {
         write_row(writer, ["status", "t", "t_lo", "t_hi", "x", "y", "z", "nx", "ny", "nz"])?;
-        rays.iter()
-            .zip(&followed)
-            .try_for_each(|(ray, (outcome, normal))| write_outcome(writer, ray, outcome, *normal))
-    })
+        rays.iter().zip(&followed).try_for_each(|(ray, end)| write_end(writer, ray, end.as_ref()))
+    })?;
+    interruption.check(unfinished as u64, rays.len() as u64, "rays")
 }
 
 fn read_rays(path: &Path) -> Result<Vec<Ray>, TableError> {
@@ -57,22 +63,27 @@ fn read_rays(path: &Path) -> Result<Vec<Ray>, TableError> {
     (0..table.rows()).map(ray).collect()
 }
 
-/// What becomes of each ray, and the normal where it ends.
-fn follow(
-    surface: &Surface,
-    tracer: &dyn Tracer,
-    rays: &[Ray],
-) -> Result<Vec<(Outcome, DVec3)>, CompileError> {
-    let mut followed = vec![(Outcome::Miss, DVec3::NAN); rays.len()];
+/// How the search along a ray ended, and the normal there.
+type End = (Outcome, DVec3);
+
+/// What becomes of each ray; `None` where work was stopped before it was known.
+fn follow(surface: &Surface, tracer: &dyn Tracer, rays: &[Ray]) -> Result<Vec<Option<End>>, CompileError> {
+    let mut followed = vec![None; rays.len()];
     rays.par_chunks(BATCH).zip(followed.par_chunks_mut(BATCH)).try_for_each_init(
         Workspace::default,
         |workspace, (rays, followed)| {
+            if surface.stop().is_requested() {
+                return Ok(());
+            }
             let mut outcomes = vec![Outcome::Miss; rays.len()];
             let mut found_normals = vec![DVec3::NAN; rays.len()];
             tracer.trace(workspace, rays, &mut outcomes);
+            if surface.stop().is_requested() {
+                return Ok(());
+            }
             normals(surface, workspace, rays, &outcomes, &mut found_normals)?;
             for ((place, outcome), normal) in followed.iter_mut().zip(outcomes).zip(found_normals) {
-                *place = (outcome, normal);
+                *place = Some((outcome, normal));
             }
             Ok(())
         },
@@ -80,7 +91,10 @@ fn follow(
     Ok(followed)
 }
 
-fn write_outcome(writer: &mut dyn Write, ray: &Ray, outcome: &Outcome, normal: DVec3) -> io::Result<()> {
+fn write_end(writer: &mut dyn Write, ray: &Ray, end: Option<&End>) -> io::Result<()> {
+    let Some((outcome, normal)) = end else {
+        return write_row(writer, [status_name(Status::Unfinished)].into_iter().chain(["nan"; 9]));
+    };
     let (t, t_lo, t_hi) = match outcome {
         Outcome::Hit(hit) | Outcome::Touch(hit) => (hit.t, hit.bracket.start, hit.bracket.end),
         Outcome::Miss => (f64::NAN, f64::NAN, f64::NAN),

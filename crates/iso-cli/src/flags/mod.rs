@@ -6,6 +6,7 @@ mod camera;
 mod eval;
 mod explain;
 mod formula;
+mod limit;
 mod method;
 mod render;
 mod stress;
@@ -16,6 +17,7 @@ pub(crate) use camera::CameraFlags;
 pub(crate) use eval::EvalFlags;
 pub(crate) use explain::{ExplainFlags, KernelName, Section};
 pub(crate) use formula::{FormulaFlags, LevelFlag};
+pub(crate) use limit::LimitFlags;
 pub(crate) use method::{EngineFlag, EngineName, MethodFlags, MethodName, ThreadsFlag};
 pub(crate) use render::{PictureFlags, RenderFlags};
 pub(crate) use stress::StressFlags;
@@ -70,7 +72,7 @@ Examples:
   iso eval 'sin(x)*y' --points points.csv --gradient
   iso explain 'x^2 + y^2 - z'
 
-Exit codes: 0 done, 1 failed, 2 bad usage or bad formula.";
+Exit codes: 0 done, 1 failed, 2 bad usage or bad formula, 3 stopped by --time-limit, 130 stopped by Ctrl-C.";
 
 const COMPLETION_EXAMPLES: &str = "\
 Examples:

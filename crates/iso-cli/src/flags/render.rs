@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use iso_render::{Size, Smoothing};
 
-use super::{CameraFlags, EngineFlag, FormulaFlags, LevelFlag, MethodFlags, ThreadsFlag};
+use super::{CameraFlags, EngineFlag, FormulaFlags, LevelFlag, LimitFlags, MethodFlags, ThreadsFlag};
 use crate::values;
 
 /// Draw a surface
@@ -29,6 +29,8 @@ pub(crate) struct RenderFlags {
     pub(crate) engine: EngineFlag,
     #[command(flatten)]
     pub(crate) threads: ThreadsFlag,
+    #[command(flatten)]
+    pub(crate) limit: LimitFlags,
 }
 
 /// What is written.

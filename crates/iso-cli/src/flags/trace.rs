@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{EngineFlag, FormulaFlags, LevelFlag, MethodFlags, ThreadsFlag};
+use super::{EngineFlag, FormulaFlags, LevelFlag, LimitFlags, MethodFlags, ThreadsFlag};
 
 /// Follow rays from a table to the surface
 ///
@@ -24,6 +24,8 @@ pub(crate) struct TraceFlags {
     pub(crate) engine: EngineFlag,
     #[command(flatten)]
     pub(crate) threads: ThreadsFlag,
+    #[command(flatten)]
+    pub(crate) limit: LimitFlags,
 }
 
 /// The rays and what becomes of them.
@@ -40,8 +42,8 @@ pub(crate) struct RayTableFlags {
 }
 
 const EXAMPLES: &str = "\
-Columns of the result: status,t,t_lo,t_hi,x,y,z,nx,ny,nz. The status is hit, touch, miss or undecided; t lies between t_lo and
-t_hi, and the normal points towards larger F. What does not exist is nan.
+Columns of the result: status,t,t_lo,t_hi,x,y,z,nx,ny,nz. The status is hit, touch, miss, undecided or unfinished; t lies between t_lo
+and t_hi, and the normal points towards larger F. What does not exist is nan.
 
 Examples:
   iso trace 'x^2 + y^2 + z^2 = 1' --rays rays.csv
