@@ -170,9 +170,10 @@ impl<'a, const N: usize> Header<'a, N> {
 /// Text for an error: readable whatever its bytes, and short whatever its length.
 fn shown(bytes: &[u8]) -> String {
     const LONGEST: usize = 80;
-    let text = String::from_utf8_lossy(bytes);
+    // What steers terminals must not reach them.
+    let text = String::from_utf8_lossy(bytes).replace(char::is_control, "\u{fffd}");
     if text.chars().count() <= LONGEST {
-        return text.into_owned();
+        return text;
     }
     text.chars().take(LONGEST).chain(['…']).collect()
 }
@@ -241,6 +242,7 @@ mod tests {
             error("x,y\n# comment\n\n1,2\n3,four"),
             "t.csv:5: column `y`: expected a number, found `four`"
         );
+        assert!(error("x,\u{1b}[2J").ends_with("are x,\u{fffd}[2J"), "{}", error("x,\u{1b}[2J"));
         let long = format!("x,y\n{},0\n", "9e".repeat(60));
         assert!(error(&long).ends_with("9e9e…`"), "{}", error(&long));
     }

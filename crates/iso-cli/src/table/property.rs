@@ -14,6 +14,7 @@ pub(crate) fn bytes_are_read_or_refused(bytes: &[u8]) {
         Err(error) => {
             let message = error.to_string();
             assert!(message.starts_with("t.csv:") && message.chars().count() < 300, "{message}");
+            assert!(!message.contains(char::is_control), "{message:?}");
             return;
         }
     };
