@@ -73,6 +73,21 @@ fn errors_stand_beside_the_values_and_hold() {
 }
 
 #[test]
+fn tables_can_be_json() {
+    let case = Case::new();
+    case.file("points.csv", "x,y,z\n1,0,0\n1e300,0,0\n0,0,0\n").file("none.csv", "x,y,z\n");
+    case.file("boxes.csv", "x_lo,x_hi,y_lo,y_hi,z_lo,z_hi\n-1,1,0,0,0,0\n");
+    let json = |flags: &[&str]| case.run(&[&["eval", "1/x^2", "--json"], flags].concat()).exits(0).json();
+    let points = json(&["--points", "points.csv", "--error"]);
+    assert_eq!(points[0]["value"], 1);
+    assert!((0.0..1e-15).contains(&points[0]["value_error"].as_f64().unwrap()));
+    assert_eq!(points[2]["value"], "inf");
+    assert_eq!(points.as_array().unwrap().len(), 3);
+    assert_eq!(json(&["--points", "none.csv"]), serde_json::json!([]));
+    assert_eq!(json(&["--boxes", "boxes.csv"])[0]["decoration"], "trv");
+}
+
+#[test]
 fn errors_have_derivatives_too_but_no_boxes() {
     let case = Case::new();
     case.file("points.csv", "x,y,z\n3,0,0\n").file("boxes.csv", "x_lo,x_hi,y_lo,y_hi,z_lo,z_hi\n");

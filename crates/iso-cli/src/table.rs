@@ -178,6 +178,62 @@ fn shown(bytes: &[u8]) -> String {
     text.chars().take(LONGEST).chain(['…']).collect()
 }
 
+/// A table that is being written, as comma-separated values or as a JSON array with an object for each row.
+pub(crate) struct TableWriter<'a> {
+    writer: &'a mut dyn Write,
+    columns: Vec<String>,
+    form: Form,
+    rows: usize,
+}
+
+/// How a table is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    /// Comma-separated values under the names of the columns.
+    Csv,
+    /// Objects whose keys are the columns. What is no finite number is a string.
+    Json,
+}
+
+impl<'a> TableWriter<'a> {
+    /// Begins a table.
+    pub(crate) fn new(writer: &'a mut dyn Write, columns: Vec<String>, form: Form) -> io::Result<Self> {
+        match form {
+            Form::Csv => write_row(writer, &columns)?,
+            Form::Json => write!(writer, "[")?,
+        }
+        Ok(Self { writer, columns, form, rows: 0 })
+    }
+
+    /// Writes a row, a field for each column.
+    pub(crate) fn row(&mut self, fields: impl Iterator<Item = String>) -> io::Result<()> {
+        self.rows += 1;
+        match self.form {
+            Form::Csv => write_row(self.writer, fields),
+            Form::Json => {
+                let separator = if self.rows == 1 { "" } else { "," };
+                let members: Vec<String> =
+                    self.columns.iter().zip(fields).map(|(name, field)| member(name, &field)).collect();
+                write!(self.writer, "{separator}\n  {{{}}}", members.join(", "))
+            }
+        }
+    }
+
+    /// Ends the table.
+    pub(crate) fn finish(self) -> io::Result<()> {
+        match self.form {
+            Form::Csv => Ok(()),
+            Form::Json => writeln!(self.writer, "\n]"),
+        }
+    }
+}
+
+/// A member of a JSON object. Finite numbers of tables are numbers of JSON as they stand.
+fn member(name: &str, field: &str) -> String {
+    let is_number = field.parse().is_ok_and(f64::is_finite);
+    if is_number { format!("\"{name}\": {field}") } else { format!("\"{name}\": \"{field}\"") }
+}
+
 /// Writes a row of fields.
 pub(crate) fn write_row<I>(writer: &mut dyn Write, fields: I) -> io::Result<()>
 where

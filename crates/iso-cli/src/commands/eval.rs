@@ -1,6 +1,5 @@
 //! `iso eval`: values of a formula at points, enclosures over boxes.
 
-use std::io::{self, Write};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -13,7 +12,7 @@ use crate::flags::EvalFlags;
 use crate::formula::{Programs, understand};
 use crate::output::Destination;
 use crate::rounding::{Rounded, rounded};
-use crate::table::{self, Table, TableError, digits, write_row};
+use crate::table::{self, Form, Table, TableError, TableWriter, digits};
 
 /// Rows that are evaluated at a time.
 const BATCH: usize = 4096;
@@ -25,10 +24,11 @@ pub(crate) fn run(flags: EvalFlags) -> Result<(), Failure> {
     let programs = Programs::new(formula.program());
     let program = if flags.places.gradient { programs.value_and_gradient } else { programs.value };
     let engine = engine(flags.engine.engine)?;
+    let form = if flags.places.json { Form::Json } else { Form::Csv };
     match (&flags.places.points, &flags.places.boxes) {
-        (Some(path), _) if flags.places.error => with_errors(engine, &program, path, &destination),
-        (Some(path), _) => at_points(engine, &program, path, &destination),
-        (None, Some(path)) => over_boxes(engine, &program, path, &destination),
+        (Some(path), _) if flags.places.error => with_errors(engine, &program, path, &destination, form),
+        (Some(path), _) => at_points(engine, &program, path, &destination, form),
+        (None, Some(path)) => over_boxes(engine, &program, path, &destination, form),
         (None, None) => Err(Failure::usage("there is nowhere to evaluate", "give --points or --boxes")),
     }
 }
@@ -41,6 +41,7 @@ fn at_points(
     program: &Program,
     path: &Path,
     destination: &Destination,
+    form: Form,
 ) -> Result<(), Failure> {
     let points = table::read(path, ["x", "y", "z"])?;
     let kernel = engine.batch(program)?;
@@ -48,16 +49,17 @@ fn at_points(
     let outputs = program.outputs().len();
     let mut scratch = Scratch::default();
     destination.write(|writer| {
-        write_row(writer, &VALUE_COLUMNS[..outputs])?;
+        let columns = VALUE_COLUMNS[..outputs].iter().map(ToString::to_string).collect();
+        let mut table = TableWriter::new(writer, columns, form)?;
         let mut values = Vec::new();
         for ((x, y), z) in x.chunks(BATCH).zip(y.chunks(BATCH)).zip(z.chunks(BATCH)) {
             values.resize(outputs * x.len(), 0.0);
             kernel.evaluate(&mut scratch, Points { x, y, z }, &mut values);
             for row in 0..x.len() {
-                write_row(writer, (0..outputs).map(|output| digits(values[output * x.len() + row])))?;
+                table.row((0..outputs).map(|output| digits(values[output * x.len() + row])))?;
             }
         }
-        Ok(())
+        table.finish()
     })
 }
 
@@ -67,6 +69,7 @@ fn with_errors(
     program: &Program,
     path: &Path,
     destination: &Destination,
+    form: Form,
 ) -> Result<(), Failure> {
     let points = table::read(path, ["x", "y", "z"])?;
     let (values, enclosures) = (engine.batch(program)?, engine.boxes(program)?);
@@ -76,15 +79,16 @@ fn with_errors(
     destination.write(|writer| {
         let columns =
             |name: &&str| [name.to_string(), format!("{name}_error"), format!("{name}_digits_lost")];
-        write_row(writer, VALUE_COLUMNS[..outputs].iter().flat_map(columns))?;
+        let columns = VALUE_COLUMNS[..outputs].iter().flat_map(columns).collect();
+        let mut table = TableWriter::new(writer, columns, form)?;
         for ((x, y), z) in x.chunks(BATCH).zip(y.chunks(BATCH)).zip(z.chunks(BATCH)) {
             let found = rounded(&*values, &*enclosures, &mut scratch, Points { x, y, z }, outputs);
             for row in 0..x.len() {
                 let places = (0..outputs).map(|output| found[output * x.len() + row]);
-                write_row(writer, places.flat_map(Rounded::fields))?;
+                table.row(places.flat_map(Rounded::fields))?;
             }
         }
-        Ok(())
+        table.finish()
     })
 }
 
@@ -100,13 +104,14 @@ fn over_boxes(
     program: &Program,
     path: &Path,
     destination: &Destination,
+    form: Form,
 ) -> Result<(), Failure> {
     let boxes = read_boxes(path)?;
     let kernel = engine.boxes(program)?;
     let outputs = program.outputs().len();
     let mut scratch = Scratch::default();
     destination.write(|writer| {
-        write_row(writer, &box_columns()[..3 * outputs])?;
+        let mut table = TableWriter::new(writer, box_columns(outputs), form)?;
         for start in (0..boxes.rows()).step_by(BATCH) {
             let rows = start..boxes.rows().min(start + BATCH);
             let [x_lo, x_hi, y_lo, y_hi, z_lo, z_hi] =
@@ -115,16 +120,16 @@ fn over_boxes(
             let mut found = Found::with_room(rows.len() * outputs);
             kernel.evaluate(&mut scratch, batch, found.enclosures());
             for row in 0..rows.len() {
-                found.write_row(writer, (0..outputs).map(|output| output * rows.len() + row))?;
+                table.row(found.fields((0..outputs).map(|output| output * rows.len() + row)))?;
             }
         }
-        Ok(())
+        table.finish()
     })
 }
 
-fn box_columns() -> Vec<String> {
+fn box_columns(outputs: usize) -> Vec<String> {
     let of = |prefix: &str| ["lo", "hi", "decoration"].map(|end| format!("{prefix}{end}"));
-    ["", "dx_", "dy_", "dz_"].into_iter().flat_map(of).collect()
+    ["", "dx_", "dy_", "dz_"][..outputs].iter().copied().flat_map(of).collect()
 }
 
 /// The boxes of a table. Infinite ends are open; nan makes an empty box.
@@ -160,14 +165,11 @@ impl Found {
         Enclosures { lo: &mut self.lo, hi: &mut self.hi, decoration: &mut self.decoration }
     }
 
-    fn write_row(&self, writer: &mut dyn Write, places: impl Iterator<Item = usize>) -> io::Result<()> {
-        write_row(
-            writer,
-            places.flat_map(|place| {
-                let decoration = decoration_name(self.decoration[place]).to_owned();
-                [end(self.lo[place]), end(self.hi[place]), decoration]
-            }),
-        )
+    fn fields(&self, places: impl Iterator<Item = usize>) -> impl Iterator<Item = String> {
+        places.flat_map(|place| {
+            let decoration = decoration_name(self.decoration[place]).to_owned();
+            [end(self.lo[place]), end(self.hi[place]), decoration]
+        })
     }
 }
 

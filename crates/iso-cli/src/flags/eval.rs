@@ -41,8 +41,12 @@ pub(crate) struct PlacesFlags {
     #[arg(long, conflicts_with = "boxes")]
     pub(crate) error: bool,
 
+    /// Write one JSON object for each row, in an array, in place of comma-separated values
+    #[arg(long)]
+    pub(crate) json: bool,
+
     /// The table of results [default: standard output]
-    #[arg(short, long, value_name = "FILE.csv")]
+    #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
 }
 
