@@ -14,9 +14,12 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use iso_expr::{Ast, Engine, Interpreter, Program};
-use iso_grid::{Direct, Grid, GridSettings, Region, Surface, Tracer};
+use iso_grid::{GridSettings, Method, Region, Surface};
 use iso_jit::Jit;
-use iso_render::{Camera, ImageFormat, Layers, Picture, Projection, Scene, Shading, Size, View, render};
+use iso_render::{
+    Camera, ImageFormat, Layers, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, View, Wanted,
+    render,
+};
 use plotters::prelude::*;
 use rayon::ThreadPoolBuilder;
 
@@ -44,7 +47,6 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// The paper's scene.
 struct Paper {
     value: Program,
-    value_and_gradient: Program,
     region: Region,
     camera: Camera,
     engines: [Arc<dyn Engine>; 2],
@@ -67,7 +69,6 @@ impl Paper {
         let value = formula.program().simplified();
         let region = Region::new(DVec3::new(-1.5, -1.5, -0.6), DVec3::new(1.5, 1.5, 0.6))?;
         Ok(Self {
-            value_and_gradient: value.with_gradient().simplified(),
             value,
             camera: Camera::new(View::DEFAULT, Projection::DEFAULT, &region, Size::new(SIDE, SIDE)?)?,
             region,
@@ -98,19 +99,30 @@ impl Paper {
 
     /// The picture with this many cells along each axis, and its time: preprocessing, tracing and shading.
     fn draw(&self, engine: &Arc<dyn Engine>, cells: u32) -> Result<(Picture, Duration), Box<dyn Error>> {
-        let surface = Surface::new(Arc::clone(engine), self.value.clone(), self.value_and_gradient.clone());
-        surface.values()?;
-        surface.gradients()?;
+        let surface = Surface::new(Arc::clone(engine), self.value.clone());
+        let plan = Plan::new(&Wanted {
+            program: &self.value,
+            method: match cells {
+                0 => Method::Direct { step: GridSettings::STEP },
+                _ => Method::Grid(GridSettings::new([cells; 3])),
+            },
+            projection: Projection::DEFAULT,
+            box_is_given: true,
+            layers: Layers { statuses: true, ..Layers::COLOR },
+            smoothing: Smoothing::NONE,
+        });
+        plan.compile(&surface)?;
         let clock = ProcessorClock::start();
-        let tracer: Box<dyn Tracer> = match cells {
-            0 => Box::new(Direct::new(&surface, self.region, GridSettings::STEP)?),
-            _ => Box::new(Grid::new(&surface, self.region, &GridSettings::new([cells; 3]))?),
-        };
+        let tracer = plan.tracer(&surface, self.region)?;
         let shading = Shading::new(&self.camera, false);
-        let scene =
-            Scene { surface: &surface, tracer: tracer.as_ref(), camera: &self.camera, shading: &shading };
-        let layers = Layers { statuses: true, ..Layers::COLOR };
-        let picture = render(&scene, Size::new(SIDE, SIDE)?, layers, &|_, _| ())?;
+        let scene = Scene {
+            plan: &plan,
+            surface: &surface,
+            tracer: tracer.as_ref(),
+            camera: &self.camera,
+            shading: &shading,
+        };
+        let picture = render(&scene, Size::new(SIDE, SIDE)?, &|_, _| ())?;
         Ok((picture, clock.elapsed()))
     }
 

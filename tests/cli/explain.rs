@@ -18,6 +18,52 @@ fn every_stage_is_shown() {
     }
 }
 
+/// What a depth map of parallel rays does without.
+#[test]
+fn the_plan_of_a_depth_map_has_no_normals_and_no_grid() {
+    let case = Case::new();
+    let picture = [PAPER, "--ortho", "--depth", "depth.exr", "--json"];
+    for (method, kernels) in [("certified", 4), ("direct", 1)] {
+        let flags = [&picture[..], &["--method", method, "--box", "-1.5,1.5"]].concat();
+        let json = case.run(&[&["explain"][..], &flags].concat()).exits(0).json();
+        assert!(case.names().is_empty(), "nothing is drawn");
+        let plan = &json["plan"];
+        let decision = |group: &str, name: &str| {
+            let lines = plan[group].as_array().unwrap();
+            lines.iter().find(|line| line["name"] == name).unwrap_or_else(|| panic!("no {name}")).clone()
+        };
+        assert_eq!(decision("kernels", "gradients")["taken"], false);
+        for pass in ["fit", "classify", "normals", "shade", "smooth"] {
+            assert_eq!(decision("passes", pass)["taken"], false, "{method} {pass}");
+            assert!(!decision("passes", pass)["reason"].as_str().unwrap().is_empty());
+        }
+        assert_eq!((&plan["kernels_compiled"], &plan["passes_skipped"]), (&kernels.into(), &5.into()));
+        let values = decision("kernels", "values")["operations"].as_u64().unwrap();
+        assert!(values < json["gradient"]["size"].as_u64().unwrap(), "the general kernel does more");
+
+        let drawn = case.run(&[&["render"][..], &flags].concat()).exits(0).json();
+        assert_eq!(&drawn["plan"], plan, "it was done as planned");
+        assert_eq!(drawn["counters"]["gradient_evaluations"], 0);
+        assert_eq!(drawn["counters"]["cells"], 0);
+        assert_eq!(drawn["gradient_operations"].is_null(), method == "direct");
+        let depth = case.content("depth.exr");
+        let everything = ["-o", "iso.ppm", "--normals", "normals.exr", "--points", "points.csv"];
+        case.run(&[&["render"][..], &flags, &everything].concat()).exits(0);
+        assert_eq!(case.content("depth.exr"), depth, "{method}");
+        for name in case.names() {
+            std::fs::remove_file(case.path(&name)).unwrap();
+        }
+    }
+}
+
+#[test]
+fn the_plan_says_why() {
+    let flags = ["explain", "x^2 + y^2 = 1", "--section", "plan", "--method", "grid"];
+    let text = Case::new().run(&flags).exits(0).stdout();
+    assert!(text.contains("z                   no  F does not depend on it: the cells along it"), "{text}");
+    assert!(text.contains("fit                 yes no box is given"), "{text}");
+}
+
 #[test]
 fn sections_can_be_chosen() {
     let case = Case::new();

@@ -68,8 +68,7 @@ impl Scene {
         let ast = Ast::parse(&self.formula).expect("the scenes' formulas are in the language");
         let formula = ast.lower(&[]).expect("the scenes' formulas have no parameters");
         let value = formula.minus_level(self.level).simplified();
-        let gradient = value.with_gradient().simplified();
-        Surface::new(engine, value, gradient)
+        Surface::new(engine, value)
     }
 
     /// The rays of the scene, row by row.

@@ -6,9 +6,11 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use iso_expr::{Engine, Interpreter, Program};
-use iso_grid::{Certified, Grid, GridSettings, Surface, Tracer};
+use iso_grid::{Certified, GridSettings, Surface, Tracer};
 use iso_jit::Jit;
-use iso_render::{Camera, Layers, Picture, Scene, Shading, Status, StatusCounts, render};
+use iso_render::{
+    Camera, Layers, Picture, Plan, Projection, Scene, Shading, Smoothing, Status, StatusCounts, Wanted, render,
+};
 
 use crate::depths::Depths;
 use crate::renderer::Renderer;
@@ -45,6 +47,7 @@ pub struct Answer {
 /// One surface, ready to be rendered.
 pub struct Iso {
     surface: Surface,
+    method: iso_grid::Method,
     tracer: Box<dyn Tracer>,
     camera: Camera,
     shading: Shading,
@@ -70,26 +73,36 @@ impl Iso {
             EngineName::Jit => Arc::new(Jit::new()?),
             EngineName::Interpreter => Arc::new(Interpreter),
         };
-        let surface = Surface::new(engine, program.clone(), program.with_gradient().simplified());
+        let surface = Surface::new(engine, program.clone());
         let region = view.region()?;
-        let tracer: Box<dyn Tracer> = match method {
-            Method::Certified => Box::new(Certified::new(&surface, region)?),
-            Method::Grid => Box::new(Grid::new(&surface, region, &GridSettings::default())?),
+        let method = match method {
+            Method::Certified => iso_grid::Method::Certified { accuracy: Certified::ACCURACY },
+            Method::Grid => iso_grid::Method::Grid(GridSettings::default()),
         };
+        let tracer = method.prepare(&surface, region)?;
         surface.gradients()?;
         let camera = view.camera()?;
         let shading = Shading::new(&camera, false);
-        Ok(Self { surface, tracer, camera, shading, view, picture: None })
+        Ok(Self { surface, method, tracer, camera, shading, view, picture: None })
     }
 
     fn draw(&self, layers: Layers) -> Result<Picture, Box<dyn Error>> {
+        let plan = Plan::new(&Wanted {
+            program: self.surface.program(),
+            method: self.method,
+            projection: Projection::Orthographic { view_width: None },
+            box_is_given: true,
+            layers,
+            smoothing: Smoothing::NONE,
+        });
         let scene = Scene {
+            plan: &plan,
             surface: &self.surface,
             tracer: &*self.tracer,
             camera: &self.camera,
             shading: &self.shading,
         };
-        Ok(render(&scene, self.view.size()?, layers, &|_, _| {})?)
+        Ok(render(&scene, self.view.size()?, &|_, _| {})?)
     }
 
     fn depths_of(&self, picture: &Picture) -> Depths {

@@ -29,7 +29,8 @@ fn view(flags: &CameraFlags, region: &Region) -> View {
     }
 }
 
-fn projection(flags: &CameraFlags) -> Projection {
+/// The projection that `flags` describe.
+pub(crate) fn projection(flags: &CameraFlags) -> Projection {
     match (flags.ortho, flags.fov) {
         (true, _) => Projection::Orthographic { view_width: flags.view_width },
         (false, Some(fov)) => Projection::Perspective { fov },

@@ -19,9 +19,9 @@ pub(crate) fn milliseconds(duration: Duration) -> f64 {
 /// Milliseconds that the phases of a picture took.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(crate) struct Phases {
-    /// From text to programs: parsing, lowering, differentiating, simplifying.
+    /// From text to programs: parsing, lowering, simplifying.
     pub(crate) parse: f64,
-    /// From programs to kernels.
+    /// From programs to kernels: differentiating, compiling.
     pub(crate) compile: f64,
     /// What the method prepares before the first ray.
     pub(crate) preprocess: f64,

@@ -1,13 +1,11 @@
-//! From the formula on the command line to a surface's programs.
+//! From the formula on the command line to the program of F − C.
 
 use std::borrow::Cow;
 use std::ffi::OsStr;
 use std::fs;
 use std::io::{self, Read};
-use std::sync::Arc;
 
-use iso_expr::{Ast, Engine, Formula, FormulaError, Program};
-use iso_grid::Surface;
+use iso_expr::{Ast, Formula, FormulaError, Program};
 
 use crate::failure::Failure;
 use crate::flags::FormulaFlags;
@@ -107,28 +105,5 @@ pub(crate) fn minus_level(formula: &Formula, level: Option<f64>) -> Result<Progr
             "the surface of left = right is where left − right = 0: leave out --level, or write (left) - (right)",
         )),
         Some(level) => Ok(formula.minus_level(level)),
-    }
-}
-
-/// The programs of a surface: F − C alone, and with its three derivatives.
-#[derive(Clone)]
-pub(crate) struct Programs {
-    /// F − C.
-    pub(crate) value: Program,
-    /// F − C, ∂x, ∂y and ∂z.
-    pub(crate) value_and_gradient: Program,
-}
-
-impl Programs {
-    /// Simplifies and differentiates the program of F − C.
-    pub(crate) fn new(value: &Program) -> Self {
-        let value = value.simplified();
-        let value_and_gradient = value.with_gradient().simplified();
-        Self { value, value_and_gradient }
-    }
-
-    /// The surface, to be compiled by `engine`.
-    pub(crate) fn surface(&self, engine: Arc<dyn Engine>) -> Surface {
-        Surface::new(engine, self.value.clone(), self.value_and_gradient.clone())
     }
 }

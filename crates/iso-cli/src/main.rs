@@ -16,6 +16,7 @@ mod interruption;
 mod method;
 mod output;
 mod pictures;
+mod plan;
 mod progress;
 mod report;
 mod rounding;
@@ -48,7 +49,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Render(flags) => commands::render::run(*flags),
         Command::Eval(flags) => commands::eval::run(flags),
         Command::Trace(flags) => commands::trace::run(flags),
-        Command::Explain(flags) => commands::explain::run(flags),
+        Command::Explain(flags) => commands::explain::run(*flags),
         Command::Bench(flags) => commands::bench::run(flags),
         Command::Stress(flags) => commands::stress::run(flags),
         Command::Completions { shell } => commands::completions::run(shell),

@@ -6,14 +6,13 @@ use std::path::{Path, PathBuf};
 use iso_render::{ImageFormat, Layers, Picture, Status};
 
 use crate::failure::Failure;
-use crate::flags::PictureFlags;
+use crate::flags::LayerFlags;
 use crate::output::OutputFile;
 use crate::table::{digits, write_row};
 
 /// The files that a picture is written to, all of them writable as far as can be known.
 pub(crate) struct PictureFiles {
-    color: OutputFile,
-    format: ImageFormat,
+    color: Option<(OutputFile, ImageFormat)>,
     depth: Option<OutputFile>,
     normals: Option<OutputFile>,
     points: Option<OutputFile>,
@@ -21,38 +20,31 @@ pub(crate) struct PictureFiles {
 
 impl PictureFiles {
     /// Checks names and places before anything is computed.
-    pub(crate) fn resolve(flags: &PictureFlags) -> Result<Self, Failure> {
-        let format = ImageFormat::of(&flags.output)?;
+    pub(crate) fn resolve(flags: &LayerFlags) -> Result<Self, Failure> {
+        let color = color(flags).map(|path| {
+            let format = ImageFormat::of(&path)?;
+            Ok::<_, Failure>((OutputFile::new(path)?, format))
+        });
         Ok(Self {
-            color: OutputFile::new(flags.output.clone())?,
-            format,
+            color: color.transpose()?,
             depth: with_extension(&flags.depth, "exr", "--depth")?,
             normals: with_extension(&flags.normals, "exr", "--normals")?,
             points: with_extension(&flags.points, "csv", "--points")?,
         })
     }
 
-    /// What must be kept of a picture to write these files.
-    pub(crate) fn layers(&self) -> Layers {
-        let points = self.points.is_some();
-        Layers {
-            color: true,
-            depth: points || self.depth.is_some(),
-            normals: points || self.normals.is_some(),
-            points,
-            statuses: points,
-        }
-    }
-
     /// The files' names as given, the shaded picture first.
     pub(crate) fn names(&self) -> Vec<String> {
+        let color = self.color.as_ref().map(|(file, _)| file);
         let others = [&self.depth, &self.normals, &self.points].into_iter().flatten();
-        std::iter::once(&self.color).chain(others).map(|file| file.path().display().to_string()).collect()
+        color.into_iter().chain(others).map(|file| file.path().display().to_string()).collect()
     }
 
     /// Writes all files.
     pub(crate) fn write(&self, picture: &Picture) -> Result<(), Failure> {
-        self.color.write(|writer| picture.write_color(self.format, writer))?;
+        if let Some((file, format)) = &self.color {
+            file.write(|writer| picture.write_color(*format, writer))?;
+        }
         if let Some(file) = &self.depth {
             file.write(|writer| picture.write_depth(writer))?;
         }
@@ -64,6 +56,25 @@ impl PictureFiles {
         }
         Ok(())
     }
+}
+
+/// What must be kept of a picture to write the files that `flags` name.
+pub(crate) fn layers(flags: &LayerFlags) -> Layers {
+    let points = flags.points.is_some();
+    Layers {
+        color: color(flags).is_some(),
+        depth: points || flags.depth.is_some(),
+        normals: points || flags.normals.is_some(),
+        points,
+        statuses: points,
+    }
+}
+
+/// Where the shaded picture goes: when nothing is asked for, that is what is meant.
+fn color(flags: &LayerFlags) -> Option<PathBuf> {
+    let others = [&flags.depth, &flags.normals, &flags.points];
+    let nothing_else = others.into_iter().all(Option::is_none);
+    flags.output.clone().or_else(|| nothing_else.then(|| PathBuf::from("iso.png")))
 }
 
 fn with_extension(

@@ -7,6 +7,7 @@ use iso_render::StatusCounts;
 use serde::Serialize;
 
 use crate::clock::Phases;
+use crate::plan::PlanReport;
 
 /// What a picture took. Its fields are the keys of `iso render --json`.
 #[derive(Debug, Serialize)]
@@ -29,8 +30,10 @@ pub(crate) struct Summary {
     pub(crate) threads: usize,
     /// Operations of the simplified program of F − C.
     pub(crate) operations: usize,
-    /// Operations of the simplified program of F − C and its gradient.
-    pub(crate) gradient_operations: usize,
+    /// Operations of the simplified program of F − C and its gradient, if the gradient is needed.
+    pub(crate) gradient_operations: Option<usize>,
+    /// What was computed, what was left out, and why.
+    pub(crate) plan: PlanReport,
     /// Drawn pixels by status: more than the picture has, if it is smoothed.
     pub(crate) pixels: StatusCounts,
     /// Counts of work.

@@ -19,7 +19,7 @@ pub struct Counters {
     pub box_evaluations: u64,
     /// Cells that rays walked through.
     pub steps: u64,
-    /// Cells of the grid.
+    /// Cells that were classified.
     pub cells: u64,
     /// Cells whose corners differ in sign.
     pub existence_cells: u64,

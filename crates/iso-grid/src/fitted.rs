@@ -146,9 +146,7 @@ mod tests {
 
     fn fitted(formula: &str) -> Region {
         let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
-        let gradient = program.with_gradient();
-        Region::fitted(&Surface::new(Arc::new(Interpreter), program, gradient), &mut Workspace::default())
-            .unwrap()
+        Region::fitted(&Surface::new(Arc::new(Interpreter), program), &mut Workspace::default()).unwrap()
     }
 
     /// The region holds the box from `min` to `max`, and is no more than a tenth of its longest side larger.

@@ -6,11 +6,13 @@ use iso_expr::{BatchKernel, BoxKernel, CompileError, Engine, Program};
 
 use crate::Stop;
 
-/// The kernels of F − C and of its gradient. Each is compiled when it is first asked for.
+/// The kernels of F − C and of its gradient. Each is compiled when it is first asked for, and F − C is differentiated when
+/// the first that takes its gradient is.
 pub struct Surface {
     engine: Arc<dyn Engine>,
     value: Program,
-    value_and_gradient: Program,
+    value_and_gradient: OnceLock<Program>,
+    value_and_rounding: OnceLock<Program>,
     value_batch: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
     gradient_batch: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
     value_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
@@ -19,17 +21,55 @@ pub struct Surface {
     stop: Stop,
 }
 
+/// One of a surface's kernels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    /// F − C at points: [`Surface::values`].
+    Values,
+    /// F − C and its gradient at points: [`Surface::gradients`].
+    Gradients,
+    /// F − C over boxes: [`Surface::value_enclosures`].
+    ValueEnclosures,
+    /// F − C and its gradient over boxes: [`Surface::gradient_enclosures`].
+    GradientEnclosures,
+    /// F − C, what rounding does to it and its gradient over boxes: [`Surface::rounding_bounds`].
+    RoundingBounds,
+}
+
+impl Kernel {
+    /// All kernels.
+    pub const ALL: [Self; 5] = [
+        Self::Values,
+        Self::Gradients,
+        Self::ValueEnclosures,
+        Self::GradientEnclosures,
+        Self::RoundingBounds,
+    ];
+
+    /// The kernel's name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Values => "values",
+            Self::Gradients => "gradients",
+            Self::ValueEnclosures => "value enclosures",
+            Self::GradientEnclosures => "gradient enclosures",
+            Self::RoundingBounds => "rounding bounds",
+        }
+    }
+}
+
 impl Surface {
-    /// The surface where `value`'s one output is zero. `value_and_gradient` computes the same value, then ∂x, ∂y and ∂z.
+    /// The surface where the one output of `value` is zero.
     ///
     /// # Panics
-    /// When the programs have other numbers of outputs.
-    pub fn new(engine: Arc<dyn Engine>, value: Program, value_and_gradient: Program) -> Self {
-        assert_eq!((value.outputs().len(), value_and_gradient.outputs().len()), (1, 4));
+    /// When the program has another number of outputs.
+    pub fn new(engine: Arc<dyn Engine>, value: Program) -> Self {
+        assert_eq!(value.outputs().len(), 1, "a surface is where one function is zero");
         Self {
             engine,
             value,
-            value_and_gradient,
+            value_and_gradient: OnceLock::new(),
+            value_and_rounding: OnceLock::new(),
             value_batch: OnceLock::new(),
             gradient_batch: OnceLock::new(),
             value_boxes: OnceLock::new(),
@@ -54,12 +94,25 @@ impl Surface {
         &self.value
     }
 
+    /// The program that a kernel is compiled from: F − C, in some with its three derivatives and more.
+    pub fn program_of(&self, kernel: Kernel) -> &Program {
+        match kernel {
+            Kernel::Values | Kernel::ValueEnclosures => &self.value,
+            Kernel::Gradients | Kernel::GradientEnclosures => {
+                self.value_and_gradient.get_or_init(|| self.value.with_gradient().simplified())
+            }
+            Kernel::RoundingBounds => {
+                self.value_and_rounding.get_or_init(|| self.value.with_rounding().simplified())
+            }
+        }
+    }
+
     /// F − C at points.
     ///
     /// # Errors
     /// When the engine cannot compile it.
     pub fn values(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
-        compiled(&self.value_batch, || self.engine.batch(&self.value))
+        compiled(&self.value_batch, || self.engine.batch(self.program_of(Kernel::Values)))
     }
 
     /// F − C and its three derivatives at points.
@@ -67,7 +120,7 @@ impl Surface {
     /// # Errors
     /// When the engine cannot compile it.
     pub fn gradients(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
-        compiled(&self.gradient_batch, || self.engine.batch(&self.value_and_gradient))
+        compiled(&self.gradient_batch, || self.engine.batch(self.program_of(Kernel::Gradients)))
     }
 
     /// F − C over boxes.
@@ -75,7 +128,7 @@ impl Surface {
     /// # Errors
     /// When the engine cannot compile it.
     pub fn value_enclosures(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
-        compiled(&self.value_boxes, || self.engine.boxes(&self.value))
+        compiled(&self.value_boxes, || self.engine.boxes(self.program_of(Kernel::ValueEnclosures)))
     }
 
     /// F − C and its three derivatives over boxes.
@@ -83,7 +136,32 @@ impl Surface {
     /// # Errors
     /// When the engine cannot compile it.
     pub fn gradient_enclosures(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
-        compiled(&self.gradient_boxes, || self.engine.boxes(&self.value_and_gradient))
+        compiled(&self.gradient_boxes, || self.engine.boxes(self.program_of(Kernel::GradientEnclosures)))
+    }
+
+    /// Compiles a kernel ahead of its use, so that the time it takes is known.
+    ///
+    /// # Errors
+    /// When the engine cannot compile it.
+    pub fn compile(&self, kernel: Kernel) -> Result<(), CompileError> {
+        match kernel {
+            Kernel::Values => self.values().map(drop),
+            Kernel::Gradients => self.gradients().map(drop),
+            Kernel::ValueEnclosures => self.value_enclosures().map(drop),
+            Kernel::GradientEnclosures => self.gradient_enclosures().map(drop),
+            Kernel::RoundingBounds => self.rounding_bounds().map(drop),
+        }
+    }
+
+    /// Whether a kernel was compiled by now.
+    pub fn is_compiled(&self, kernel: Kernel) -> bool {
+        match kernel {
+            Kernel::Values => matches!(self.value_batch.get(), Some(Ok(_))),
+            Kernel::Gradients => matches!(self.gradient_batch.get(), Some(Ok(_))),
+            Kernel::ValueEnclosures => matches!(self.value_boxes.get(), Some(Ok(_))),
+            Kernel::GradientEnclosures => matches!(self.gradient_boxes.get(), Some(Ok(_))),
+            Kernel::RoundingBounds => matches!(self.rounding_boxes.get(), Some(Ok(_))),
+        }
     }
 
     /// F − C, [what rounding does to it](Program::with_rounding) and its three derivatives over boxes.
@@ -91,7 +169,7 @@ impl Surface {
     /// # Errors
     /// When the engine cannot compile it.
     pub fn rounding_bounds(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
-        compiled(&self.rounding_boxes, || self.engine.boxes(&self.value.with_rounding().simplified()))
+        compiled(&self.rounding_boxes, || self.engine.boxes(self.program_of(Kernel::RoundingBounds)))
     }
 }
 

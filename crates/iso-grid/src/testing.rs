@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use iso_expr::engine::Points;
-use iso_expr::{BatchKernel, BoxKernel, CompileError, Engine, PointKernel, Program, Scratch};
+use iso_expr::{
+    Axis, BatchKernel, BoxKernel, CompileError, Engine, Operation, PointKernel, Program, Scratch,
+};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -57,12 +59,12 @@ impl BatchKernel for Functions {
 
 /// The surface where `value` is zero.
 pub(crate) fn surface(value: Function, gradient: Gradient) -> Surface {
+    // The engine does not look at the program, but methods ask it which arguments the function takes.
     let mut program = Program::new();
-    let output = program.literal(0.0);
+    let arguments = Axis::ALL.map(|axis| program.variable(axis));
+    let output = program.apply(Operation::Select, &arguments);
     program.set_outputs(vec![output]);
-    let mut with_gradient = program.clone();
-    with_gradient.set_outputs(vec![output; 4]);
-    Surface::new(Arc::new(Functions { value, gradient }), program, with_gradient)
+    Surface::new(Arc::new(Functions { value, gradient }), program)
 }
 
 /// The surface where `value` is zero, for tests that ask for no gradient.

@@ -31,8 +31,7 @@ const SCENES: [(&str, f64, &str); 18] = [
 
 fn certified(value: &Program, half_side: f64) -> Certified {
     let value = value.simplified();
-    let gradient = value.with_gradient().simplified();
-    let surface = Surface::new(Arc::new(Interpreter), value, gradient);
+    let surface = Surface::new(Arc::new(Interpreter), value);
     let corner = DVec3::splat(half_side);
     Certified::new(&surface, Region::new(-corner, corner).unwrap()).unwrap()
 }

@@ -13,8 +13,7 @@ const X: DVec3 = DVec3::X;
 
 fn certified(formula: &str, half_side: f64) -> Certified {
     let value = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
-    let gradient = value.with_gradient().simplified();
-    let surface = Surface::new(Arc::new(Interpreter), value, gradient);
+    let surface = Surface::new(Arc::new(Interpreter), value);
     let corner = DVec3::splat(half_side);
     Certified::new(&surface, Region::new(-corner, corner).unwrap()).unwrap()
 }
@@ -270,8 +269,7 @@ fn assert_no_crossing_is_passed(seed: u64, allowed: &[Operation], programs: usiz
     for number in 0..programs {
         let operations = 1 + random.below(12);
         let program = random.program_of(operations, allowed).simplified();
-        let surface =
-            Surface::new(Arc::new(Interpreter), program.clone(), program.with_gradient().simplified());
+        let surface = Surface::new(Arc::new(Interpreter), program.clone());
         let tracer = Certified::new(&surface, region).unwrap();
         let mut corner = || DVec3::new(random.coordinate(), random.coordinate(), random.coordinate());
         let (origin, target) = (2.0 * corner(), corner());

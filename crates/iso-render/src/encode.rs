@@ -87,7 +87,7 @@ impl Picture {
         let channels = SpecificChannels::build()
             .with_channel("Z")
             .with_pixel_fn(|position: Vec2<usize>| (self.depth[self.pixel(position)] as f32,));
-        Ok(Image::from_channels(self.dimensions(), channels).write().to_buffered(writer)?)
+        Ok(Image::from_channels(self.dimensions(), channels).write().non_parallel().to_buffered(writer)?)
     }
 
     /// Writes the normals as the three 32-bit float channels `N.X`, `N.Y` and `N.Z` of an OpenEXR file; NaN where there
@@ -104,7 +104,7 @@ impl Picture {
                 let normal = self.normals[self.pixel(position)].as_vec3();
                 (normal.x, normal.y, normal.z)
             });
-        Ok(Image::from_channels(self.dimensions(), channels).write().to_buffered(writer)?)
+        Ok(Image::from_channels(self.dimensions(), channels).write().non_parallel().to_buffered(writer)?)
     }
 
     fn pixel(&self, position: Vec2<usize>) -> usize {

@@ -1,12 +1,13 @@
 //! Scenes, cameras, shading and pictures of F(x, y, z) = C.
 //!
-//! A [`Camera`] turns pixels into rays, [`render`] asks a tracer about them tile by tile on all cores, [`Shading`] turns
+//! A [`Plan`] says what a picture takes and what is left out. A [`Camera`] turns pixels into rays, [`render`] asks a tracer about them tile by tile on all cores, [`Shading`] turns
 //! what was found into colours, and the resulting [`Picture`] writes itself to files.
 
 mod camera;
 mod color;
 mod encode;
 mod picture;
+mod plan;
 mod render;
 mod shading;
 mod size;
@@ -16,6 +17,7 @@ pub use camera::{Camera, CameraError, Projection, View};
 pub use color::{Color, color_from_srgb, srgb_from_color};
 pub use encode::{EncodeError, ImageFormat};
 pub use picture::{Layers, Picture, Status, StatusCounts};
+pub use plan::{Buffer, Decision, Given, Pass, Plan, Wanted};
 pub use render::{Progress, RenderError, Scene, render};
 pub use shading::Shading;
 pub use size::{Size, SizeError};

@@ -89,11 +89,6 @@ impl Layers {
     /// The shaded picture alone.
     pub const COLOR: Self =
         Self { color: true, depth: false, normals: false, points: false, statuses: false };
-
-    /// Whether normals must be computed.
-    pub(crate) fn need_normals(self) -> bool {
-        self.color || self.normals
-    }
 }
 
 /// A picture: the layers that were asked for, rows from top to bottom, and what they took.

@@ -10,11 +10,13 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::color::srgb_from_color;
-use crate::{Camera, Layers, Picture, Shading, Size, Status, StatusCounts};
+use crate::{Camera, Layers, Pass, Picture, Plan, Shading, Size, Status, StatusCounts};
 
 /// What a picture shows, and how its rays are followed.
 #[derive(Clone, Copy)]
 pub struct Scene<'a> {
+    /// What the picture takes.
+    pub plan: &'a Plan,
     /// The surface, for its normals.
     pub surface: &'a Surface,
     /// The method of intersection, ready for the surface.
@@ -43,7 +45,7 @@ pub enum RenderError {
 /// Width and height of a tile: small enough to balance cores, large enough to fill batches.
 const TILE: u32 = 64;
 
-/// Renders `scene` at `size` on the threads of the current rayon pool, keeping `layers`.
+/// Renders `scene` at `size` on the threads of the current rayon pool, keeping the layers of its plan.
 ///
 /// The picture is the same bit for bit whatever the number of threads.
 ///
@@ -52,17 +54,13 @@ const TILE: u32 = 64;
 ///
 /// # Errors
 /// When memory does not suffice or a kernel cannot be compiled.
-pub fn render(
-    scene: &Scene<'_>,
-    size: Size,
-    layers: Layers,
-    progress: Progress<'_>,
-) -> Result<Picture, RenderError> {
+pub fn render(scene: &Scene<'_>, size: Size, progress: Progress<'_>) -> Result<Picture, RenderError> {
     let start = Instant::now();
+    let layers = scene.plan.layers();
     let picture = Picture::with_room(size, layers).ok_or(RenderError::OutOfMemory(size))?;
     let finished = Mutex::new(Finished { picture, pixels: 0, trace: Duration::ZERO, shade: Duration::ZERO });
     tiles(size).into_par_iter().try_for_each_init(Workspace::default, |workspace, area| {
-        let Some(tile) = Tile::render(scene, size, layers, area, workspace)? else { return Ok(()) };
+        let Some(tile) = Tile::render(scene, size, area, workspace)? else { return Ok(()) };
         let mut finished = finished.lock().expect("no thread panics while it holds the picture");
         finished.take(&tile);
         progress(finished.pixels, size.pixels() as u64);
@@ -113,7 +111,6 @@ impl Tile {
     fn render(
         scene: &Scene<'_>,
         size: Size,
-        layers: Layers,
         area: Area,
         workspace: &mut Workspace,
     ) -> Result<Option<Self>, RenderError> {
@@ -136,12 +133,12 @@ impl Tile {
         let traced = Instant::now();
 
         let mut found_normals = Vec::new();
-        if layers.need_normals() {
+        if scene.plan.runs(Pass::Normals) {
             found_normals.resize(rays.len(), DVec3::NAN);
             normals(scene.surface, workspace, &rays, &outcomes, &mut found_normals)?;
         }
         let mut color = Vec::new();
-        if layers.color {
+        if scene.plan.runs(Pass::Shade) {
             color.extend(pixels().enumerate().map(|(place, (_, row))| {
                 let view = rays[place].direction;
                 srgb_from_color(scene.shading.color(&outcomes[place], found_normals[place], view, row, size))
@@ -149,6 +146,7 @@ impl Tile {
         }
         let (trace, shade) = (traced - start, traced.elapsed());
         let counters = workspace.counters;
+        let layers = scene.plan.layers();
         Ok(Some(Self { area, layers, rays, outcomes, normals: found_normals, color, counters, trace, shade }))
     }
 

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use iso_expr::{Axis, Interpreter, NodeId, Operation, Program};
-use iso_grid::{Certified, Region, Stop, Surface};
+use iso_grid::{Certified, Method, Region, Stop, Surface};
 use iso_render::{
-    Camera, Layers, Picture, Projection, Scene, Shading, Size, Status, StatusCounts, View, render,
+    Camera, Layers, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, Status, StatusCounts, View,
+    Wanted, render,
 };
 
 const ALL: Layers = Layers { color: true, depth: true, normals: true, points: true, statuses: true };
@@ -37,22 +38,30 @@ fn picture(size: Size, threads: usize) -> Picture {
 /// The same, but `stop` is requested when so many pixels are done.
 fn picture_until(stop: &Stop, size: Size, threads: usize, last: u64) -> Picture {
     let program = sphere();
-    let gradient = program.with_gradient();
-    let surface = Surface::new(Arc::new(Interpreter), program, gradient).stopped_by(stop.clone());
+    let surface = Surface::new(Arc::new(Interpreter), program).stopped_by(stop.clone());
     let region = Region::new(DVec3::splat(-1.5), DVec3::splat(1.5)).unwrap();
-    let tracer = Certified::new(&surface, region).unwrap();
     let view = View::Orbit { yaw: 0.0, pitch: 0.0, distance: Some(5.0) };
     let projection = Projection::Orthographic { view_width: Some(0.05 * f64::from(size.width())) };
     let camera = Camera::new(view, projection, &region, size).unwrap();
+    let plan = Plan::new(&Wanted {
+        program: surface.program(),
+        method: Method::Certified { accuracy: Certified::ACCURACY },
+        projection,
+        box_is_given: true,
+        layers: ALL,
+        smoothing: Smoothing::NONE,
+    });
+    let tracer = plan.tracer(&surface, region).unwrap();
     let shading = Shading::new(&camera, false);
-    let scene = Scene { surface: &surface, tracer: &tracer, camera: &camera, shading: &shading };
+    let scene =
+        Scene { plan: &plan, surface: &surface, tracer: tracer.as_ref(), camera: &camera, shading: &shading };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let progress = |done, _| {
         if done >= last {
             stop.request();
         }
     };
-    pool.install(|| render(&scene, size, ALL, &progress)).unwrap()
+    pool.install(|| render(&scene, size, &progress)).unwrap()
 }
 
 #[test]

@@ -7,18 +7,18 @@ use std::time::Duration;
 
 use glam::DVec3;
 use iso_expr::engine::Points;
-use iso_expr::{CompileError, Engine, Interpreter, Scratch};
-use iso_grid::Region;
+use iso_expr::{CompileError, Engine, Interpreter, Program, Scratch};
+use iso_grid::{Region, Surface};
 use iso_jit::Jit;
-use iso_render::{Camera, Layers, Projection, Scene, Shading, Size, View, render};
+use iso_render::{Camera, Layers, Plan, Projection, Scene, Shading, Size, Smoothing, View, Wanted, render};
 use serde::Serialize;
 
 use crate::clock::{Spread, milliseconds, timed};
 use crate::engine::threads;
 use crate::failure::Failure;
 use crate::flags::BenchFlags;
-use crate::formula::{Programs, minus_level, understand};
-use crate::method::{Method, region};
+use crate::formula::{minus_level, understand};
+use crate::method::{method, region};
 use crate::output::to_standard_output;
 
 /// Points at which the formula is evaluated.
@@ -29,11 +29,18 @@ const LONG_ENOUGH: Duration = Duration::from_millis(5);
 /// Measures both engines.
 pub(crate) fn run(flags: BenchFlags) -> Result<(), Failure> {
     let formula = understand(&flags.formula)?;
-    let programs = Programs::new(&minus_level(&formula, flags.level.level)?);
-    let region = region(flags.method.region, &programs.surface(Arc::new(Interpreter)))?;
+    let program = minus_level(&formula, flags.level.level)?.simplified();
+    let region = region(flags.method.region, &Surface::new(Arc::new(Interpreter), program.clone()))?;
     let bench = Bench {
-        programs,
-        method: Method::resolve(&flags.method)?,
+        plan: Plan::new(&Wanted {
+            program: &program,
+            method: method(&flags.method)?,
+            projection: Projection::DEFAULT,
+            box_is_given: true,
+            layers: Layers::COLOR,
+            smoothing: Smoothing::NONE,
+        }),
+        program,
         region,
         size: flags.measurement.size,
         points: spread_points(&region),
@@ -51,8 +58,8 @@ pub(crate) fn run(flags: BenchFlags) -> Result<(), Failure> {
 
 /// What is measured.
 struct Bench {
-    programs: Programs,
-    method: Method,
+    program: Program,
+    plan: Plan,
     region: Region,
     size: Size,
     points: [Vec<f64>; 3],
@@ -83,8 +90,8 @@ impl Bench {
         let [interpreter, native] = rounds.map(|rounds| Measured::of(&rounds));
         let [width, height] = [self.size.width(), self.size.height()];
         Ok(Report {
-            operations: self.programs.value.operations(),
-            method: self.method.name(),
+            operations: self.program.operations(),
+            method: self.plan.method().name(),
             width,
             height,
             runs,
@@ -109,7 +116,7 @@ impl Bench {
 
     /// Nanoseconds of one evaluation when each point is asked for by itself.
     fn point_by_point(&self, engine: &dyn Engine) -> Result<f64, CompileError> {
-        let kernel = engine.point(&self.programs.value)?;
+        let kernel = engine.point(&self.program)?;
         let (mut scratch, mut value) = (Scratch::default(), [0.0]);
         let [x, y, z] = &self.points;
         Ok(nanoseconds_each(|| {
@@ -122,7 +129,7 @@ impl Bench {
 
     /// Nanoseconds of one evaluation when all points are asked for together.
     fn in_batches(&self, engine: &dyn Engine) -> Result<f64, CompileError> {
-        let kernel = engine.batch(&self.programs.value)?;
+        let kernel = engine.batch(&self.program)?;
         let (mut scratch, mut values) = (Scratch::default(), vec![0.0; POINTS]);
         let [x, y, z] = &self.points;
         Ok(nanoseconds_each(|| {
@@ -133,16 +140,21 @@ impl Bench {
 
     /// The times of compiling a picture's kernels, and of everything else up to its colours.
     fn picture(&self, engine: &Arc<dyn Engine>) -> Result<(Duration, Duration), Failure> {
-        let surface = self.programs.surface(Arc::clone(engine));
-        let (compiled, compile) = timed(|| self.method.compile(&surface));
+        let surface = Surface::new(Arc::clone(engine), self.program.clone());
+        let (compiled, compile) = timed(|| self.plan.compile(&surface));
         compiled?;
         let (drawn, picture) = timed(|| {
-            let tracer = self.method.prepare(&surface, self.region)?;
+            let tracer = self.plan.tracer(&surface, self.region)?;
             let camera = Camera::new(View::DEFAULT, Projection::DEFAULT, &self.region, self.size)?;
             let shading = Shading::new(&camera, false);
-            let scene =
-                Scene { surface: &surface, tracer: tracer.as_ref(), camera: &camera, shading: &shading };
-            black_box(render(&scene, self.size, Layers::COLOR, &|_, _| ())?);
+            let scene = Scene {
+                plan: &self.plan,
+                surface: &surface,
+                tracer: tracer.as_ref(),
+                camera: &camera,
+                shading: &shading,
+            };
+            black_box(render(&scene, self.size, &|_, _| ())?);
             Ok::<(), Failure>(())
         });
         drawn?;

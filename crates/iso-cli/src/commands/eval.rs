@@ -9,7 +9,7 @@ use iso_expr::{Decoration, Engine, Program, Scratch};
 use crate::engine::engine;
 use crate::failure::Failure;
 use crate::flags::EvalFlags;
-use crate::formula::{Programs, understand};
+use crate::formula::understand;
 use crate::output::Destination;
 use crate::rounding::{Rounded, rounded};
 use crate::table::{self, Form, Table, TableError, TableWriter, digits};
@@ -21,8 +21,8 @@ const BATCH: usize = 4096;
 pub(crate) fn run(flags: EvalFlags) -> Result<(), Failure> {
     let destination = Destination::new(flags.places.output)?;
     let formula = understand(&flags.formula)?;
-    let programs = Programs::new(formula.program());
-    let program = if flags.places.gradient { programs.value_and_gradient } else { programs.value };
+    let value = formula.program().simplified();
+    let program = if flags.places.gradient { value.with_gradient().simplified() } else { value };
     let engine = engine(flags.engine.engine)?;
     let form = if flags.places.json { Form::Json } else { Form::Csv };
     match (&flags.places.points, &flags.places.boxes) {

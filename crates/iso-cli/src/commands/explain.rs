@@ -1,10 +1,12 @@
-//! `iso explain`: what becomes of a formula on its way to machine code.
+//! `iso explain`: what a picture takes, and what becomes of its formula on the way to machine code.
 
 use std::io::{self, Write};
+use std::sync::Arc;
 use std::time::Duration;
 
 use clap::ValueEnum;
-use iso_expr::Program;
+use iso_expr::{Interpreter, Program};
+use iso_grid::Surface;
 use iso_jit::{Jit, Kind};
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -15,22 +17,26 @@ use crate::flags::{ExplainFlags, KernelName, Section};
 use crate::formula::{Source, Text, minus_level};
 use crate::hints::{Hint, hints};
 use crate::output::to_standard_output;
+use crate::plan::{PlanReport, plan};
 
-/// Shows the stages of a formula.
+/// Shows the plan of a picture and the stages of its formula.
 pub(crate) fn run(flags: ExplainFlags) -> Result<(), Failure> {
     let wanted =
         |section: &Section| flags.sections.sections.is_empty() || flags.sections.sections.contains(section);
-    let stages = stages(&flags)?;
-    let shown = || stages.iter().filter(|(section, _)| wanted(section));
+    let sections = sections(&flags)?;
+    let shown = || sections.iter().filter(|(section, _)| wanted(section));
     to_standard_output(|writer| {
         if flags.sections.json {
             let object: Map<String, Value> = shown()
-                .map(|(section, stage)| Ok((section.name(), serde_json::to_value(stage)?)))
+                .map(|(section, shown)| Ok((section.name(), serde_json::to_value(shown)?)))
                 .collect::<serde_json::Result<_>>()?;
             serde_json::to_writer_pretty(&mut *writer, &object)?;
             return writeln!(writer);
         }
-        shown().try_for_each(|(section, stage)| stage.write(writer, &section.name()))
+        shown().try_for_each(|(section, shown)| match shown {
+            Shown::Plan(plan) => plan.write(writer),
+            Shown::Stage(stage) => stage.write(writer, &section.name()),
+        })
     })
 }
 
@@ -39,6 +45,14 @@ impl Section {
     fn name(self) -> String {
         self.to_possible_value().expect("no section is hidden").get_name().to_owned()
     }
+}
+
+/// What a section shows.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+enum Shown {
+    Plan(PlanReport),
+    Stage(Stage),
 }
 
 /// What stands at the end of a stage.
@@ -72,13 +86,14 @@ impl Stage {
     }
 }
 
-fn stages(flags: &ExplainFlags) -> Result<Vec<(Section, Stage)>, Failure> {
-    let source = Source::read(&flags.formula.formula)?;
+fn sections(flags: &ExplainFlags) -> Result<Vec<(Section, Shown)>, Failure> {
+    let picture = &flags.picture;
+    let source = Source::read(&picture.formula.formula)?;
     let (text, parse_time) = timed(|| source.parse());
     let text = text?;
     let (program, lower_time) = timed(|| {
-        let formula = source.lower(&text, &flags.formula.settings)?;
-        minus_level(&formula, flags.level.level)
+        let formula = source.lower(&text, &picture.formula.settings)?;
+        minus_level(&formula, picture.level.level)
     });
     let program = program?;
     let hints = timed(|| hints(&program));
@@ -90,7 +105,9 @@ fn stages(flags: &ExplainFlags) -> Result<Vec<(Section, Stage)>, Failure> {
         Text::Formula(ast) => ast.outline().to_string(),
         Text::Model(_) => String::new(),
     };
-    Ok(vec![
+    let surface = Surface::new(Arc::new(Interpreter), simplified.0.clone());
+    let plan = PlanReport::new(&plan(picture, &simplified.0)?, &surface, program.operations());
+    let stages = [
         (Section::Tree, Stage::new(tree.lines().count(), "lines", parse_time, tree)),
         (Section::Program, Stage::program(&(program, lower_time))),
         (Section::Hints, Stage::hints(&hints)),
@@ -101,7 +118,9 @@ fn stages(flags: &ExplainFlags) -> Result<Vec<(Section, Stage)>, Failure> {
             Stage::new(listing.clif.lines().count(), "lines", listing.compile_time, listing.clif),
         ),
         (Section::Assembly, Stage::new(listing.code_bytes, "bytes", listing.compile_time, listing.assembly)),
-    ])
+    ];
+    let stages = stages.map(|(section, stage)| (section, Shown::Stage(stage)));
+    Ok([(Section::Plan, Shown::Plan(plan))].into_iter().chain(stages).collect())
 }
 
 fn kind(name: KernelName) -> Kind {

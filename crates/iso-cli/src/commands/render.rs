@@ -3,21 +3,22 @@
 use std::io::{self, Write};
 use std::sync::Arc;
 
-use iso_expr::Engine;
-use iso_grid::{Counters, GridError, Region, Surface};
-use iso_render::{Picture, Scene, Shading, Size, Smoothing, render};
+use iso_expr::{Engine, Program};
+use iso_grid::{Counters, GridError, Kernel, Region, Surface};
+use iso_render::{Pass, Picture, Plan, Scene, Shading, Size, Smoothing, render};
 use rayon::ThreadPool;
 
 use crate::camera::camera;
 use crate::clock::{Phases, add_to};
 use crate::engine::{engine, threads};
 use crate::failure::Failure;
-use crate::flags::{CameraFlags, RenderFlags};
-use crate::formula::{Programs, Source, minus_level};
+use crate::flags::{CameraFlags, RenderFlags, SummaryFlags};
+use crate::formula::{Source, minus_level};
 use crate::interruption::Interruption;
-use crate::method::{Method, region};
+use crate::method::region;
 use crate::output::to_standard_output;
 use crate::pictures::PictureFiles;
+use crate::plan::{PlanReport, plan};
 use crate::progress::Progress;
 use crate::summary::Summary;
 
@@ -39,9 +40,12 @@ pub(crate) fn run(flags: RenderFlags) -> Result<(), Failure> {
 
 /// What is to be drawn, how, and where it goes: all that flags and files say, checked.
 struct Request {
-    programs: Programs,
+    /// F − C, simplified.
+    program: Program,
+    /// Operations of F − C before it was simplified.
+    operations_before: usize,
+    plan: Plan,
     region: Option<Region>,
-    method: Method,
     camera: CameraFlags,
     smoothing: Smoothing,
     /// The size in which the picture is drawn, before it is smoothed.
@@ -62,26 +66,33 @@ enum Speech {
     Json,
 }
 
+impl Speech {
+    fn of(flags: &SummaryFlags) -> Self {
+        match (flags.json, flags.quiet) {
+            (true, _) => Self::Json,
+            (false, true) => Self::Nothing,
+            (false, false) => Self::Line,
+        }
+    }
+}
+
 impl Request {
     fn resolve(flags: RenderFlags, phases: &mut Phases) -> Result<Self, Failure> {
+        let RenderFlags { picture: flags, summary } = flags;
         let interruption = Interruption::new(&flags.limit);
-        let method = Method::resolve(&flags.method)?;
         let smoothing = flags.output.smooth;
         let files = PictureFiles::resolve(&flags.output)?;
-        let speech = match (flags.output.json, flags.output.quiet) {
-            (true, _) => Speech::Json,
-            (false, true) => Speech::Nothing,
-            (false, false) => Speech::Line,
-        };
         let source = Source::read(&flags.formula.formula)?;
-        let programs = add_to(&mut phases.parse, || {
+        let (operations_before, program) = add_to(&mut phases.parse, || {
             let formula = source.lower(&source.parse()?, &flags.formula.settings)?;
-            Ok::<_, Failure>(Programs::new(&minus_level(&formula, flags.level.level)?))
+            let program = minus_level(&formula, flags.level.level)?;
+            Ok::<_, Failure>((program.operations(), program.simplified()))
         })?;
         Ok(Self {
-            programs,
+            plan: plan(&flags, &program)?,
+            program,
+            operations_before,
             region: flags.method.region,
-            method,
             camera: flags.camera,
             smoothing,
             drawn: smoothing
@@ -89,7 +100,7 @@ impl Request {
                 .map_err(|error| Failure::usage(error.to_string(), "choose a smaller --size or --smooth"))?,
             shows_status: flags.output.show_status,
             files,
-            speech,
+            speech: Speech::of(&summary),
             engine: add_to(&mut phases.compile, || engine(flags.engine.engine))?,
             threads: threads(&flags.threads)?,
             interruption,
@@ -98,8 +109,9 @@ impl Request {
 
     /// Draws the picture and writes its files.
     fn fulfil(&self, mut phases: Phases) -> Result<Summary, Failure> {
-        let surface = self.programs.surface(Arc::clone(&self.engine)).stopped_by(self.interruption.stop());
-        add_to(&mut phases.compile, || self.method.compile(&surface))?;
+        let surface =
+            Surface::new(Arc::clone(&self.engine), self.program.clone()).stopped_by(self.interruption.stop());
+        add_to(&mut phases.compile, || self.plan.compile(&surface))?;
         let region = add_to(&mut phases.preprocess, || region(self.region, &surface))?;
         let (picture, preprocessing) = self.threads.install(|| self.draw(&surface, region, &mut phases))?;
         add_to(&mut phases.encode, || self.files.write(&picture))?;
@@ -111,11 +123,15 @@ impl Request {
             height: picture.size.height(),
             box_min: region.min().to_array(),
             box_max: region.max().to_array(),
-            method: self.method.name(),
+            method: self.plan.method().name(),
             engine: self.engine.name(),
             threads: self.threads.current_num_threads(),
-            operations: self.programs.value.operations(),
-            gradient_operations: self.programs.value_and_gradient.operations(),
+            operations: self.program.operations(),
+            gradient_operations: self
+                .plan
+                .takes_gradient()
+                .then(|| surface.program_of(Kernel::Gradients).operations()),
+            plan: PlanReport::new(&self.plan, &surface, self.operations_before).after(&surface),
             pixels: picture.counts,
             counters,
             milliseconds: phases,
@@ -130,19 +146,22 @@ impl Request {
         phases: &mut Phases,
     ) -> Result<(Picture, Counters), Failure> {
         let camera = camera(&self.camera, &region, self.drawn)?;
-        let tracer = add_to(&mut phases.preprocess, || self.method.prepare(surface, region))
+        let tracer = add_to(&mut phases.preprocess, || self.plan.tracer(surface, region))
             .map_err(|error| self.interruption.explain(error))?;
         let shading = Shading::new(&camera, self.shows_status);
-        let scene = Scene { surface, tracer: tracer.as_ref(), camera: &camera, shading: &shading };
+        let scene =
+            Scene { plan: &self.plan, surface, tracer: tracer.as_ref(), camera: &camera, shading: &shading };
         let progress = Progress::new(self.speech == Speech::Line);
         let report = |done, all| progress.report(done, all);
-        let picture = render(&scene, self.drawn, self.files.layers(), &report);
+        let picture = render(&scene, self.drawn, &report);
         progress.finish();
         let mut picture = picture?;
         if picture.counts.unfinished == self.drawn.pixels() as u64 {
             return Err(self.interruption.explain(GridError::Stopped));
         }
-        add_to(&mut phases.shade, || self.smoothing.finish(&mut picture));
+        if self.plan.runs(Pass::Smooth) {
+            add_to(&mut phases.shade, || self.smoothing.finish(&mut picture));
+        }
         phases.trace += 1e3 * picture.trace_seconds;
         phases.shade += 1e3 * picture.shade_seconds;
         Ok((picture, tracer.preprocessing()))

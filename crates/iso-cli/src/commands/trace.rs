@@ -12,9 +12,9 @@ use rayon::prelude::*;
 use crate::engine::{engine, threads};
 use crate::failure::Failure;
 use crate::flags::TraceFlags;
-use crate::formula::{Programs, minus_level, understand};
+use crate::formula::{minus_level, understand};
 use crate::interruption::Interruption;
-use crate::method::{Method, region};
+use crate::method::{method, region};
 use crate::output::Destination;
 use crate::pictures::status_name;
 use crate::table::{self, TableError, digits, write_row};
@@ -25,12 +25,12 @@ const BATCH: usize = 1024;
 /// Follows the rays of a table.
 pub(crate) fn run(flags: TraceFlags) -> Result<(), Failure> {
     let interruption = Interruption::new(&flags.limit);
-    let method = Method::resolve(&flags.method)?;
+    let method = method(&flags.method)?;
     let destination = Destination::new(flags.tables.output)?;
     let formula = understand(&flags.formula)?;
-    let programs = Programs::new(&minus_level(&formula, flags.level.level)?);
+    let program = minus_level(&formula, flags.level.level)?.simplified();
     let rays = read_rays(&flags.tables.rays)?;
-    let surface = programs.surface(engine(flags.engine.engine)?).stopped_by(interruption.stop());
+    let surface = Surface::new(engine(flags.engine.engine)?, program).stopped_by(interruption.stop());
     let followed = threads(&flags.threads)?.install(|| {
         let region = region(flags.method.region, &surface)?;
         let tracer = method.prepare(&surface, region).map_err(|error| interruption.explain(error))?;

@@ -2,18 +2,17 @@
 
 use clap::{Args, ValueEnum};
 
-use super::{FormulaFlags, LevelFlag};
+use super::PictureFlags;
 
-/// Show what becomes of a formula on its way to machine code
+/// Show what a picture takes, and what becomes of its formula on the way to machine code
 ///
-/// Each stage comes with its size and the time that it took.
+/// The options are those of `iso render`. The plan says what is computed for such a picture, what is left out, and why; nothing is
+/// drawn. The stages of the formula come with their sizes and the times that they took.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct ExplainFlags {
     #[command(flatten)]
-    pub(crate) formula: FormulaFlags,
-    #[command(flatten)]
-    pub(crate) level: LevelFlag,
+    pub(crate) picture: PictureFlags,
     #[command(flatten)]
     pub(crate) sections: SectionFlags,
 }
@@ -35,9 +34,11 @@ pub(crate) struct SectionFlags {
     pub(crate) json: bool,
 }
 
-/// The stages on the way to machine code.
+/// The plan, and the stages on the way to machine code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Section {
+    /// What the picture takes, what is left out, and why
+    Plan,
     /// The formula as it was understood
     Tree,
     /// The program as the tree is lowered to it
@@ -68,6 +69,7 @@ pub(crate) enum KernelName {
 const EXAMPLES: &str = "\
 Examples:
   iso explain '(x^2+y^2-1)^2 + 4z^2 + 0.5x = 0.2'
+  iso explain '(x^2+y^2-1)^2 + 4z^2 + 0.5x = 0.2' --section plan --ortho --depth depth.exr
   iso explain 'x^3 y + sin(x)' --section simplified,gradient
   iso explain 'x^2 + y^2 - z' --section assembly --kernel batch
   iso explain @surface.txt --json";

@@ -19,7 +19,7 @@ pub(crate) use explain::{ExplainFlags, KernelName, Section};
 pub(crate) use formula::{FormulaFlags, LevelFlag};
 pub(crate) use limit::LimitFlags;
 pub(crate) use method::{EngineFlag, EngineName, MethodFlags, MethodName, ThreadsFlag};
-pub(crate) use render::{PictureFlags, RenderFlags};
+pub(crate) use render::{LayerFlags, PictureFlags, RenderFlags, SummaryFlags};
 pub(crate) use stress::StressFlags;
 pub(crate) use trace::TraceFlags;
 
@@ -46,8 +46,8 @@ pub(crate) enum Command {
     Eval(EvalFlags),
     /// Follow rays from a table to the surface
     Trace(TraceFlags),
-    /// Show what becomes of a formula on its way to machine code
-    Explain(ExplainFlags),
+    /// Show what a picture takes, and what becomes of its formula
+    Explain(Box<ExplainFlags>),
     /// Measure the interpreter against native code
     Bench(BenchFlags),
     /// Run the suite of hard cases and hold every method against what is proven

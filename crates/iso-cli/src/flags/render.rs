@@ -16,6 +16,15 @@ use crate::values;
 #[command(after_help = EXAMPLES)]
 pub(crate) struct RenderFlags {
     #[command(flatten)]
+    pub(crate) picture: PictureFlags,
+    #[command(flatten)]
+    pub(crate) summary: SummaryFlags,
+}
+
+/// A picture, and how it is made.
+#[derive(Debug, Args)]
+pub(crate) struct PictureFlags {
+    #[command(flatten)]
     pub(crate) formula: FormulaFlags,
     #[command(flatten)]
     pub(crate) level: LevelFlag,
@@ -24,7 +33,7 @@ pub(crate) struct RenderFlags {
     #[command(flatten)]
     pub(crate) camera: CameraFlags,
     #[command(flatten)]
-    pub(crate) output: PictureFlags,
+    pub(crate) output: LayerFlags,
     #[command(flatten)]
     pub(crate) engine: EngineFlag,
     #[command(flatten)]
@@ -36,10 +45,10 @@ pub(crate) struct RenderFlags {
 /// What is written.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Output")]
-pub(crate) struct PictureFlags {
-    /// The picture; its extension says the format: png, jpg, webp, tif, bmp, ppm or qoi
-    #[arg(short, long, value_name = "FILE", default_value = "iso.png")]
-    pub(crate) output: PathBuf,
+pub(crate) struct LayerFlags {
+    /// The picture; its extension says the format: png, jpg, webp, tif, bmp, ppm or qoi [default: iso.png, if nothing else is written]
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
 
     /// Width and height in pixels; one number is a square
     #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "512x512")]
@@ -65,8 +74,13 @@ pub(crate) struct PictureFlags {
     /// Write a table with a row for each pixel: column,row,status,t,x,y,z,nx,ny,nz
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) points: Option<PathBuf>,
+}
 
-    /// Print one JSON object with sizes, pixels by status, counters and milliseconds
+/// What is said when the picture is done.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Output")]
+pub(crate) struct SummaryFlags {
+    /// Print one JSON object with sizes, the plan, pixels by status, counters and milliseconds
     #[arg(long)]
     pub(crate) json: bool,
 
@@ -82,4 +96,5 @@ Examples:
   iso render 'sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)' --level 0.3 --box -4,4 --yaw -20 --pitch 40
   iso render 'x^4 + y^4 + z^4 = 1' --smooth 3 -o figure.png
   iso render '-x^2 - y^2 - z^2' --level -1 --method grid --grid 60 --json
-  iso render @heart.txt --set a=0.5 --size 1920x1080 --depth depth.exr --points points.csv";
+  iso render @heart.txt --set a=0.5 --size 1920x1080 -o heart.png --points points.csv
+  iso render 'x^2 + y^2 = z' --ortho --depth depth.exr";

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use iso_expr::{Engine, Interpreter};
-use iso_grid::{Certified, GridSettings, Outcome, Ray, Surface, Tracer, Workspace};
+use iso_grid::{Certified, GridSettings, Method, Outcome, Ray, Surface, Tracer, Workspace};
 use iso_render::{Camera, Projection, Size, Status, StatusCounts, View};
 use serde::Serialize;
 
@@ -15,8 +15,6 @@ use crate::comparison::{Answers, Verdict, compare};
 use crate::engine::engine;
 use crate::failure::Failure;
 use crate::flags::EngineName;
-use crate::formula::Programs;
-use crate::method::Method;
 
 /// The methods as they are without flags, the certified one first: the others are held against it.
 const METHODS: [fn() -> Method; 4] = [
@@ -105,8 +103,7 @@ pub(crate) struct Run {
 
 /// Traces a case at `size`.
 pub(crate) fn measure(case: &Case, size: Size) -> Result<Measured, Failure> {
-    let value = program(&case.formula).expect("the formulas of the suite are in the language");
-    let programs = Programs::new(&value);
+    let value = program(&case.formula).expect("the formulas of the suite are in the language").simplified();
     let engines: [Arc<dyn Engine>; 2] = [Arc::new(Interpreter), engine(EngineName::Jit)?];
     let camera = Camera::new(View::DEFAULT, Projection::DEFAULT, &case.region, size)?;
     let pixels = (0..size.height()).flat_map(|row| (0..size.width()).map(move |column| (column, row)));
@@ -118,7 +115,7 @@ pub(crate) fn measure(case: &Case, size: Size) -> Result<Measured, Failure> {
         formula: case.formula.clone(),
         hard: case.hard.clone(),
         open: case.open.clone(),
-        engines: check_engines(&engines, &programs.value_and_gradient, &case.region)?,
+        engines: check_engines(&engines, &value.with_gradient().simplified(), &case.region)?,
         truth: TruthCounts::default(),
         runs: Vec::new(),
         broken: Vec::new(),
@@ -126,7 +123,7 @@ pub(crate) fn measure(case: &Case, size: Size) -> Result<Measured, Failure> {
     };
     let truths = truths(case, &measured.view.rays, size)?;
     for engine in engines {
-        measured.trace(case, &programs.surface(engine.clone()), engine.name(), &truths)?;
+        measured.trace(case, &Surface::new(engine.clone(), value.clone()), engine.name(), &truths)?;
     }
     measured.engines_are_right();
     Ok(measured)
@@ -141,7 +138,7 @@ fn truths(case: &Case, rays: &[Ray], size: Size) -> Result<Vec<Truth>, Failure> 
         }
         Stated::SameAs(formula) => {
             let value = program(formula).expect("the formulas of the suite are in the language");
-            let surface = Programs::new(&value).surface(Arc::new(Interpreter));
+            let surface = Surface::new(Arc::new(Interpreter), value.simplified());
             let tracer = Certified::new(&surface, *region)?;
             trace(&tracer, rays, size).iter().map(Truth::of_proven).collect()
         }
@@ -168,7 +165,7 @@ impl Measured {
     ) -> Result<(), Failure> {
         let may_be_open = case.open.is_some();
         for (number, method) in METHODS.iter().map(|method| method()).enumerate() {
-            method.compile(surface)?;
+            method.kernels().iter().try_for_each(|kernel| surface.compile(*kernel))?;
             let (traced, time) = timed(|| {
                 let tracer = method.prepare(surface, case.region)?;
                 let outcomes = trace(tracer.as_ref(), &self.view.rays, self.view.size);

@@ -121,6 +121,11 @@ impl Program {
         self.nodes.iter().enumerate().map(|(index, node)| (NodeId(index as u32), node))
     }
 
+    /// Whether the argument along `axis` occurs. A simplified program holds nothing that its outputs do not need.
+    pub fn takes(&self, axis: Axis) -> bool {
+        self.places.contains_key(&Node::Variable(axis))
+    }
+
     /// How many operations one evaluation takes.
     pub fn operations(&self) -> usize {
         self.nodes.iter().filter(|node| matches!(node, Node::Apply(..))).count()

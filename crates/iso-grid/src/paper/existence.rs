@@ -83,8 +83,9 @@ impl Cells {
         Ok(cells)
     }
 
-    /// Whether the cell at `place` holds the surface.
+    /// Whether the cell at `place` holds the surface. Places beyond the last along an axis are those of cells like it.
     pub(crate) fn holds_surface(&self, place: [usize; 3]) -> bool {
+        let place = std::array::from_fn(|axis| place[axis].min(self.counts[axis] - 1));
         self.states[lattice::index(place, self.counts)] == State::Existence
     }
 

@@ -48,8 +48,7 @@ pub(crate) fn ends_in_time(random: &mut Random, program: &Program, limit: Durati
 
 fn trace_by_all(random: &mut Random, program: &Program, stop: &Stop) -> Result<(), GridError> {
     let value = program.simplified();
-    let gradient = value.with_gradient().simplified();
-    let surface = Surface::new(Arc::new(Interpreter), value, gradient).stopped_by(stop.clone());
+    let surface = Surface::new(Arc::new(Interpreter), value).stopped_by(stop.clone());
     let region = Region::new(DVec3::splat(-HALF_SIDE), DVec3::splat(HALF_SIDE)).expect("the region has room");
     let rays = tile(random);
     let settings = GridSettings::new([8; 3]);

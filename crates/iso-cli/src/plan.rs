@@ -1,0 +1,139 @@
+//! The plan of a picture, from flags to reports.
+
+use std::io::{self, Write};
+
+use iso_expr::{Axis, Program};
+use iso_grid::{Kernel, Surface};
+use iso_render::{Buffer, Decision, Given, Pass, Plan, Wanted};
+use serde::Serialize;
+
+use crate::camera::projection;
+use crate::failure::Failure;
+use crate::flags::PictureFlags;
+use crate::method::method;
+use crate::pictures::layers;
+
+/// The plan of the picture that `flags` describe, of the surface of a simplified program.
+pub(crate) fn plan(flags: &PictureFlags, program: &Program) -> Result<Plan, Failure> {
+    Ok(Plan::new(&Wanted {
+        program,
+        method: method(&flags.method)?,
+        projection: projection(&flags.camera),
+        box_is_given: flags.method.region.is_some(),
+        layers: layers(&flags.output),
+        smoothing: flags.output.smooth,
+    }))
+}
+
+/// A plan as it is reported. Its fields are the keys of the object `plan`.
+#[derive(Debug, Serialize)]
+pub(crate) struct PlanReport {
+    /// The method of intersection.
+    method: &'static str,
+    /// Operations of the program of F − C.
+    operations: Operations,
+    /// The arguments that F takes.
+    arguments: Vec<Line>,
+    /// What is a constant of the kernels.
+    constants: Vec<Line>,
+    /// The kernels.
+    kernels: Vec<Line>,
+    /// How many of them are compiled.
+    kernels_compiled: usize,
+    /// The stages of the work.
+    passes: Vec<Line>,
+    /// How many of them are left out.
+    passes_skipped: usize,
+    /// What is kept for each pixel.
+    buffers: Vec<Line>,
+}
+
+/// How many operations one evaluation takes.
+#[derive(Debug, Serialize)]
+struct Operations {
+    /// As the formula was read.
+    before: usize,
+    /// After simplification.
+    after: usize,
+}
+
+/// A decision.
+#[derive(Debug, Serialize)]
+struct Line {
+    name: &'static str,
+    taken: bool,
+    /// Of a kernel that is taken: the operations of one evaluation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    operations: Option<usize>,
+    reason: &'static str,
+}
+
+impl PlanReport {
+    /// What `plan` decides for `surface`, whose program took `before` operations before it was simplified.
+    pub(crate) fn new(plan: &Plan, surface: &Surface, before: usize) -> Self {
+        let kernels = plan.kernels().iter().map(|decision| {
+            let operations = decision.taken.then(|| surface.program_of(decision.subject).operations());
+            Line { operations, ..Line::new(decision, Kernel::name) }
+        });
+        Self {
+            method: plan.method().name(),
+            operations: Operations { before, after: surface.program().operations() },
+            arguments: lines(plan.arguments(), Axis::name),
+            constants: lines(plan.constants(), Given::name),
+            kernels: kernels.collect(),
+            kernels_compiled: plan.kernels().iter().filter(|kernel| kernel.taken).count(),
+            passes: lines(plan.passes(), Pass::name),
+            passes_skipped: plan.passes().iter().filter(|pass| !pass.taken).count(),
+            buffers: lines(plan.buffers(), Buffer::name),
+        }
+    }
+
+    /// The same after the work: with the number of kernels that it came to.
+    pub(crate) fn after(self, surface: &Surface) -> Self {
+        let compiled = Kernel::ALL.into_iter().filter(|kernel| surface.is_compiled(*kernel));
+        Self { kernels_compiled: compiled.count(), ..self }
+    }
+
+    /// Writes the plan for people: a line for each decision.
+    pub(crate) fn write(&self, writer: &mut dyn Write) -> io::Result<()> {
+        let Operations { before, after } = self.operations;
+        writeln!(
+            writer,
+            "plan: kernels compiled {}, passes skipped {}",
+            self.kernels_compiled, self.passes_skipped
+        )?;
+        writeln!(
+            writer,
+            "    method {}; F − C takes {after} operations, {before} before simplification",
+            self.method
+        )?;
+        for (title, lines) in [
+            ("arguments", &self.arguments),
+            ("constants", &self.constants),
+            ("kernels", &self.kernels),
+            ("passes", &self.passes),
+            ("buffers", &self.buffers),
+        ] {
+            writeln!(writer, "    {title}")?;
+            lines.iter().try_for_each(|line| line.write(writer))?;
+        }
+        writeln!(writer)
+    }
+}
+
+fn lines<T: Copy>(decisions: &[Decision<T>], name: fn(T) -> &'static str) -> Vec<Line> {
+    decisions.iter().map(|decision| Line::new(decision, name)).collect()
+}
+
+impl Line {
+    fn new<T: Copy>(decision: &Decision<T>, name: fn(T) -> &'static str) -> Self {
+        let Decision { subject, taken, reason } = *decision;
+        Self { name: name(subject), taken, operations: None, reason }
+    }
+
+    fn write(&self, writer: &mut dyn Write) -> io::Result<()> {
+        let answer = if self.taken { "yes" } else { "no" };
+        let operations = self.operations.map_or_else(String::new, |count| format!(" ({count} operations)"));
+        writeln!(writer, "        {:<19} {answer:<3} {}{operations}", self.name, self.reason)
+    }
+}

@@ -1,0 +1,59 @@
+//! The methods of intersection, by name and settings.
+
+use crate::{Certified, Direct, Grid, GridError, GridSettings, Kernel, Octree, Region, Surface, Tracer};
+
+/// A method of intersection with its settings, not yet prepared for a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method {
+    /// Prove every ray: [`Certified`].
+    Certified {
+        /// The width to which roots are enclosed: see [`Certified::with_accuracy`].
+        accuracy: f64,
+    },
+    /// The paper's grid: [`Grid`].
+    Grid(GridSettings),
+    /// The paper's grid, hierarchical: [`Octree`].
+    Octree(GridSettings),
+    /// Sample along the whole ray: [`Direct`].
+    Direct {
+        /// The step between samples: see [`Direct::new`].
+        step: f64,
+    },
+}
+
+impl Method {
+    /// The method's name in reports.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Certified { .. } => "certified",
+            Self::Grid(_) => "grid",
+            Self::Octree(_) => "octree",
+            Self::Direct { .. } => "direct",
+        }
+    }
+
+    /// The kernels that the method follows rays with.
+    pub fn kernels(&self) -> &'static [Kernel] {
+        match self {
+            Self::Certified { .. } => {
+                &[Kernel::Values, Kernel::ValueEnclosures, Kernel::GradientEnclosures, Kernel::RoundingBounds]
+            }
+            Self::Grid(_) | Self::Octree(_) | Self::Direct { .. } => &[Kernel::Values],
+        }
+    }
+
+    /// Prepares the method for a surface in a region.
+    ///
+    /// # Errors
+    /// When a setting is out of range, there are too many cells, or the engine cannot compile the surface.
+    pub fn prepare(&self, surface: &Surface, region: Region) -> Result<Box<dyn Tracer>, GridError> {
+        Ok(match self {
+            Self::Certified { accuracy } => {
+                Box::new(Certified::new(surface, region)?.with_accuracy(*accuracy))
+            }
+            Self::Grid(settings) => Box::new(Grid::new(surface, region, settings)?),
+            Self::Octree(settings) => Box::new(Octree::new(surface, region, settings)?),
+            Self::Direct { step } => Box::new(Direct::new(surface, region, *step)?),
+        })
+    }
+}

@@ -1,0 +1,301 @@
+//! The plan of a picture: what it takes and what is left out, decided before any work.
+
+use iso_expr::{Axis, CompileError, Program};
+use iso_grid::{GridError, Kernel, Method, Region, Surface, Tracer};
+
+use crate::{Layers, Projection, Smoothing};
+
+/// What a picture is to be.
+#[derive(Clone, Copy, Debug)]
+pub struct Wanted<'a> {
+    /// The simplified program of F − C.
+    pub program: &'a Program,
+    /// How rays are followed.
+    pub method: Method,
+    /// How space is projected onto the picture.
+    pub projection: Projection,
+    /// Whether the box is given, so that none needs to be fitted.
+    pub box_is_given: bool,
+    /// What is kept of the picture.
+    pub layers: Layers,
+    /// How edges are smoothed.
+    pub smoothing: Smoothing,
+}
+
+/// What a picture takes, and why. [`render`](crate::render()) and all around it ask the plan what to do.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    method: Method,
+    layers: Layers,
+    arguments: [Decision<Axis>; 3],
+    constants: [Decision<Given>; 4],
+    kernels: [Decision<Kernel>; 5],
+    passes: [Decision<Pass>; 6],
+    buffers: [Decision<Buffer>; 5],
+}
+
+/// Whether something is part of the plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Decision<T> {
+    /// What was decided upon.
+    pub subject: T,
+    /// Whether the picture takes it.
+    pub taken: bool,
+    /// Why, in a few words.
+    pub reason: &'static str,
+}
+
+/// What is known before the first ray, and might be a constant of the kernels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Given {
+    /// The level C.
+    Level,
+    /// The formula's parameters.
+    Parameters,
+    /// The direction of the rays.
+    Direction,
+    /// The place of the camera.
+    Position,
+}
+
+impl Given {
+    /// Its name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Level => "level",
+            Self::Parameters => "parameters",
+            Self::Direction => "direction",
+            Self::Position => "position",
+        }
+    }
+}
+
+/// A stage of the work on a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pass {
+    /// A box is fitted around the surface.
+    Fit,
+    /// The cells of a grid are classified, all of them before the first ray.
+    Classify,
+    /// Rays are followed to the surface.
+    Trace,
+    /// Normals are found where rays meet the surface.
+    Normals,
+    /// Colours are found.
+    Shade,
+    /// Pixels are averaged.
+    Smooth,
+}
+
+impl Pass {
+    /// The pass's name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fit => "fit",
+            Self::Classify => "classify",
+            Self::Trace => "trace",
+            Self::Normals => "normals",
+            Self::Shade => "shade",
+            Self::Smooth => "smooth",
+        }
+    }
+}
+
+/// Something that is kept for each pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Buffer {
+    /// [`Layers::color`].
+    Color,
+    /// [`Layers::depth`].
+    Depth,
+    /// [`Layers::normals`].
+    Normals,
+    /// [`Layers::points`].
+    Points,
+    /// [`Layers::statuses`].
+    Statuses,
+}
+
+impl Buffer {
+    /// The buffer's name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Color => "color",
+            Self::Depth => "depth",
+            Self::Normals => "normals",
+            Self::Points => "points",
+            Self::Statuses => "statuses",
+        }
+    }
+}
+
+impl Plan {
+    /// Decides what a picture takes.
+    pub fn new(wanted: &Wanted<'_>) -> Self {
+        Self {
+            method: wanted.method,
+            layers: wanted.layers,
+            arguments: Axis::ALL.map(|axis| decide(axis, wanted.argument(axis))),
+            constants: [Given::Level, Given::Parameters, Given::Direction, Given::Position]
+                .map(|given| decide(given, wanted.constant(given))),
+            kernels: Kernel::ALL.map(|kernel| decide(kernel, wanted.kernel(kernel))),
+            passes: [Pass::Fit, Pass::Classify, Pass::Trace, Pass::Normals, Pass::Shade, Pass::Smooth]
+                .map(|pass| decide(pass, wanted.pass(pass))),
+            buffers: [Buffer::Color, Buffer::Depth, Buffer::Normals, Buffer::Points, Buffer::Statuses]
+                .map(|buffer| decide(buffer, wanted.buffer(buffer))),
+        }
+    }
+
+    /// How rays are followed.
+    pub fn method(&self) -> Method {
+        self.method
+    }
+
+    /// What is kept of the picture.
+    pub fn layers(&self) -> Layers {
+        self.layers
+    }
+
+    /// The arguments that F takes.
+    pub fn arguments(&self) -> &[Decision<Axis>] {
+        &self.arguments
+    }
+
+    /// What is a constant of the kernels.
+    pub fn constants(&self) -> &[Decision<Given>] {
+        &self.constants
+    }
+
+    /// The kernels that are compiled.
+    pub fn kernels(&self) -> &[Decision<Kernel>] {
+        &self.kernels
+    }
+
+    /// The passes that run, in their order.
+    pub fn passes(&self) -> &[Decision<Pass>] {
+        &self.passes
+    }
+
+    /// The buffers that exist.
+    pub fn buffers(&self) -> &[Decision<Buffer>] {
+        &self.buffers
+    }
+
+    /// Whether a pass runs.
+    pub fn runs(&self, pass: Pass) -> bool {
+        self.passes.iter().any(|decision| decision.subject == pass && decision.taken)
+    }
+
+    /// Whether a kernel takes the gradient, so that F is differentiated.
+    pub fn takes_gradient(&self) -> bool {
+        let gradients = [Kernel::Gradients, Kernel::GradientEnclosures];
+        self.kernels.iter().any(|decision| decision.taken && gradients.contains(&decision.subject))
+    }
+
+    /// Compiles the kernels ahead of their use, so that the time it takes is known.
+    ///
+    /// # Errors
+    /// When the engine cannot compile one.
+    pub fn compile(&self, surface: &Surface) -> Result<(), CompileError> {
+        let taken = self.kernels.iter().filter(|kernel| kernel.taken);
+        taken.map(|kernel| kernel.subject).try_for_each(|kernel| surface.compile(kernel))
+    }
+
+    /// Prepares the method for a surface in a region.
+    ///
+    /// # Errors
+    /// Those of [`Method::prepare`].
+    pub fn tracer(&self, surface: &Surface, region: Region) -> Result<Box<dyn Tracer>, GridError> {
+        self.method.prepare(surface, region)
+    }
+}
+
+/// Whether something is taken, and why.
+type Verdict = (bool, &'static str);
+
+fn decide<T>(subject: T, (taken, reason): Verdict) -> Decision<T> {
+    Decision { subject, taken, reason }
+}
+
+impl Wanted<'_> {
+    fn argument(&self, axis: Axis) -> Verdict {
+        match (self.program.takes(axis), self.method) {
+            (true, _) => (true, "F depends on it"),
+            (false, Method::Grid(_)) => {
+                (false, "F does not depend on it: the cells along it are classified as one")
+            }
+            (false, _) => (false, "F does not depend on it"),
+        }
+    }
+
+    fn constant(&self, given: Given) -> Verdict {
+        match (given, self.projection) {
+            (Given::Level, _) => (true, "the kernels compute F − C"),
+            (Given::Parameters, _) => (true, "their values are folded while simplifying"),
+            (Given::Direction, Projection::Orthographic { .. }) => (
+                false,
+                "all rays share one, set up once; kernels take points, so another view compiles nothing",
+            ),
+            (Given::Direction, Projection::Perspective { .. }) => (false, "each ray has its own"),
+            (Given::Position, _) => (false, "kernels take points, so another view compiles nothing"),
+        }
+    }
+
+    fn kernel(&self, kernel: Kernel) -> Verdict {
+        let certified = matches!(self.method, Method::Certified { .. });
+        match kernel {
+            Kernel::Values if certified => (true, "roots are narrowed down at points before they are proven"),
+            Kernel::Values => (true, "rays are sampled and roots bisected"),
+            Kernel::Gradients => self.normals(),
+            Kernel::ValueEnclosures if certified => (true, "stretches of rays and cells are proven empty"),
+            Kernel::ValueEnclosures if !self.box_is_given => (true, "a box is fitted around the surface"),
+            Kernel::ValueEnclosures => (false, "the method samples, and the box is given"),
+            Kernel::GradientEnclosures if certified => (true, "roots are proven to be simple"),
+            Kernel::GradientEnclosures => (false, "the method samples"),
+            Kernel::RoundingBounds if certified => {
+                (true, "roots found at points are proven by the rounding of F")
+            }
+            Kernel::RoundingBounds => (false, "the method samples"),
+        }
+    }
+
+    fn pass(&self, pass: Pass) -> Verdict {
+        match (pass, self.method) {
+            (Pass::Fit, _) if self.box_is_given => (false, "the box is given"),
+            (Pass::Fit, _) => (true, "no box is given"),
+            (Pass::Classify, Method::Grid(_) | Method::Octree(_)) => {
+                (true, "whether a cell holds the surface depends on its neighbours")
+            }
+            (Pass::Classify, Method::Certified { .. }) => {
+                (false, "a cell is proven empty when the first ray comes by")
+            }
+            (Pass::Classify, Method::Direct { .. }) => (false, "the method has no grid"),
+            (Pass::Trace, _) => (true, "every layer needs it"),
+            (Pass::Normals, _) => self.normals(),
+            (Pass::Shade, _) if self.layers.color => (true, "a shaded picture is wanted"),
+            (Pass::Shade, _) => (false, "no shaded picture is wanted"),
+            (Pass::Smooth, _) if self.smoothing == Smoothing::NONE => (false, "each pixel is drawn once"),
+            (Pass::Smooth, _) => (true, "several pixels are drawn for each of the picture"),
+        }
+    }
+
+    fn normals(&self) -> Verdict {
+        match self.layers {
+            Layers { color: true, .. } => (true, "shading needs normals"),
+            Layers { normals: true, .. } => (true, "normals are wanted"),
+            _ => (false, "neither a shaded picture nor normals are wanted"),
+        }
+    }
+
+    fn buffer(&self, buffer: Buffer) -> Verdict {
+        let Layers { color, depth, normals, points, statuses } = self.layers;
+        let wanted = match buffer {
+            Buffer::Color => color,
+            Buffer::Depth => depth,
+            Buffer::Normals => normals,
+            Buffer::Points => points,
+            Buffer::Statuses => statuses,
+        };
+        (wanted, if wanted { "an output needs it" } else { "no output needs it" })
+    }
+}

@@ -1,0 +1,168 @@
+//! What a plan leaves out is not done, and changes no bit of what is left.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use iso_expr::{Ast, Axis, Interpreter, Program};
+use iso_grid::{Certified, GridSettings, Kernel, Method, Region, Surface};
+use iso_render::{
+    Buffer, Camera, Given, Layers, Pass, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, View,
+    Wanted, render,
+};
+
+const PAPER: &str = "(x^2+y^2-1)^2 + 4z^2 + 0.5x = 0.2";
+const ALL: Layers = Layers { color: true, depth: true, normals: true, points: true, statuses: true };
+const DEPTH: Layers = Layers { color: false, depth: true, normals: false, points: false, statuses: false };
+const ORTHOGRAPHIC: Projection = Projection::Orthographic { view_width: None };
+
+fn methods() -> [Method; 4] {
+    [
+        Method::Certified { accuracy: Certified::ACCURACY },
+        Method::Grid(GridSettings::new([12, 10, 9])),
+        Method::Octree(GridSettings::new([12; 3])),
+        Method::Direct { step: GridSettings::STEP },
+    ]
+}
+
+fn program(formula: &str) -> Program {
+    Ast::parse(formula).unwrap().lower(&[]).unwrap().program().simplified()
+}
+
+fn wanted(program: &Program, method: Method, layers: Layers) -> Wanted<'_> {
+    Wanted {
+        program,
+        method,
+        projection: ORTHOGRAPHIC,
+        box_is_given: true,
+        layers,
+        smoothing: Smoothing::NONE,
+    }
+}
+
+/// A picture, and the kernels that were compiled for it.
+fn draw(program: &Program, plan: &Plan) -> (Picture, Vec<Kernel>) {
+    let size = Size::new(60, 40).unwrap();
+    let surface = Surface::new(Arc::new(Interpreter), program.clone());
+    let region = Region::new(DVec3::splat(-1.5), DVec3::splat(1.5)).unwrap();
+    let camera = Camera::new(View::DEFAULT, ORTHOGRAPHIC, &region, size).unwrap();
+    let shading = Shading::new(&camera, false);
+    let tracer = plan.tracer(&surface, region).unwrap();
+    let scene =
+        Scene { plan, surface: &surface, tracer: tracer.as_ref(), camera: &camera, shading: &shading };
+    let picture = render(&scene, size, &|_, _| {}).unwrap();
+    assert!(picture.counts.hit > 100, "{:?}", picture.counts);
+    (picture, Kernel::ALL.into_iter().filter(|kernel| surface.is_compiled(*kernel)).collect())
+}
+
+fn planned(plan: &Plan) -> Vec<Kernel> {
+    plan.kernels().iter().filter(|kernel| kernel.taken).map(|kernel| kernel.subject).collect()
+}
+
+fn bits(vectors: &[DVec3]) -> Vec<[u64; 3]> {
+    vectors.iter().map(|vector| vector.to_array().map(f64::to_bits)).collect()
+}
+
+#[test]
+fn the_kernels_compiled_are_the_planned_ones() {
+    let program = program(PAPER);
+    for method in methods() {
+        for layers in [ALL, Layers::COLOR, DEPTH, Layers { normals: true, ..DEPTH }] {
+            let plan = Plan::new(&wanted(&program, method, layers));
+            assert_eq!(draw(&program, &plan).1, planned(&plan), "{method:?} {layers:?}");
+        }
+    }
+}
+
+#[test]
+fn layers_left_out_are_not_computed_and_change_no_other() {
+    let program = program(PAPER);
+    for method in methods() {
+        let (all, _) = draw(&program, &Plan::new(&wanted(&program, method, ALL)));
+        assert!(all.counters.gradient_evaluations > 0);
+        let every_choice = (0..32).map(|choice| {
+            let chosen = |layer: u32| choice >> layer & 1 == 1;
+            Layers {
+                color: chosen(0),
+                depth: chosen(1),
+                normals: chosen(2),
+                points: chosen(3),
+                statuses: chosen(4),
+            }
+        });
+        for layers in every_choice {
+            let plan = Plan::new(&wanted(&program, method, layers));
+            let (picture, _) = draw(&program, &plan);
+            let full = |wanted: bool| if wanted { all.size.pixels() } else { 0 };
+            assert_eq!(picture.color, all.color[..full(layers.color)], "{method:?} {layers:?}");
+            let depths = |depths: &[f64]| depths.iter().map(|t| t.to_bits()).collect::<Vec<_>>();
+            assert_eq!(depths(&picture.depth), depths(&all.depth[..full(layers.depth)]));
+            assert_eq!(bits(&picture.normals), bits(&all.normals[..full(layers.normals)]));
+            assert_eq!(bits(&picture.points), bits(&all.points[..full(layers.points)]));
+            assert_eq!(picture.statuses, all.statuses[..full(layers.statuses)]);
+            assert_eq!(picture.counts, all.counts);
+            assert_eq!(picture.counters.gradient_evaluations > 0, plan.runs(Pass::Normals));
+            let kept: Vec<bool> = plan.buffers().iter().map(|buffer| buffer.taken).collect();
+            assert_eq!(kept, [layers.color, layers.depth, layers.normals, layers.points, layers.statuses]);
+            assert_eq!(plan.buffers()[1].subject, Buffer::Depth);
+        }
+    }
+}
+
+#[test]
+fn cells_are_classified_ahead_by_the_methods_that_say_so() {
+    let program = program(PAPER);
+    for method in methods() {
+        let plan = Plan::new(&wanted(&program, method, DEPTH));
+        let surface = Surface::new(Arc::new(Interpreter), program.clone());
+        let region = Region::new(DVec3::splat(-1.5), DVec3::splat(1.5)).unwrap();
+        let preprocessing = plan.tracer(&surface, region).unwrap().preprocessing();
+        assert_eq!(preprocessing.cells > 0, plan.runs(Pass::Classify), "{method:?}");
+        assert_eq!(preprocessing.preprocess_evaluations > 0, plan.runs(Pass::Classify), "{method:?}");
+    }
+}
+
+/// A surface without z is the same as one whose z has no weight, which the plan cannot know. Enclosures can: theirs are
+/// wider by a rounding, so that certified roots differ in the last bits.
+#[test]
+fn an_argument_that_is_not_taken_is_not_cut_along() {
+    let (flat, full) = (program("x^2 + y^2 = 1"), program("x^2 + y^2 + 0*z = 1"));
+    assert!(full.takes(Axis::Z), "or the test says nothing");
+    let [_, sampling @ ..] = methods();
+    for method in sampling {
+        let plans =
+            [&flat, &full].map(|program| Plan::new(&wanted(program, method, Layers { color: false, ..ALL })));
+        assert_eq!(plans.each_ref().map(|plan| plan.arguments()[2].taken), [false, true]);
+        let [(picture, _), (other, _)] =
+            [(&flat, &plans[0]), (&full, &plans[1])].map(|(program, plan)| draw(program, plan));
+        assert_eq!(bits(&picture.points), bits(&other.points), "{method:?}");
+        assert_eq!(bits(&picture.normals), bits(&other.normals), "{method:?}");
+        assert_eq!(picture.statuses, other.statuses, "{method:?}");
+    }
+}
+
+#[test]
+fn boxes_are_fitted_and_pixels_averaged_only_when_asked_for() {
+    let program = program(PAPER);
+    let method = Method::Direct { step: GridSettings::STEP };
+    let plain = wanted(&program, method, Layers::COLOR);
+    let runs = |wanted: Wanted<'_>, pass| Plan::new(&wanted).runs(pass);
+    assert!(!runs(plain, Pass::Fit) && runs(Wanted { box_is_given: false, ..plain }, Pass::Fit));
+    let smooth = Wanted { smoothing: Smoothing::new(3).unwrap(), ..plain };
+    assert!(!runs(plain, Pass::Smooth) && runs(smooth, Pass::Smooth));
+    let fitting = Plan::new(&Wanted { box_is_given: false, ..plain });
+    assert!(planned(&fitting).contains(&Kernel::ValueEnclosures));
+}
+
+/// Nothing of the camera is a constant of a kernel: another view compiles nothing.
+#[test]
+fn another_view_takes_the_same_kernels() {
+    let program = program(PAPER);
+    for method in methods() {
+        let parallel = Plan::new(&wanted(&program, method, ALL));
+        let spreading =
+            Plan::new(&Wanted { projection: Projection::DEFAULT, ..wanted(&program, method, ALL) });
+        assert_eq!(planned(&parallel), planned(&spreading));
+        let folded = parallel.constants().iter().filter(|given| given.taken).map(|given| given.subject);
+        assert_eq!(folded.collect::<Vec<_>>(), [Given::Level, Given::Parameters]);
+    }
+}
