@@ -28,11 +28,11 @@ impl Pieces {
     /// The n for which `x` lies from (n + shift)·π to (n + 1 + shift)·π. `x` is not beyond [`LARGEST_REDUCED`].
     fn index(&self, x: f64) -> i64 {
         let turns = x * FRAC_1_PI - self.shift;
-        let nearest = turns.round_ties_even();
+        let nearest = nearest_integer(turns);
         // Three roundings (of 1/π, the product and the difference), each of at most half an ulp.
         let error = (turns.abs() + 1.0) * (2.0 * f64::EPSILON);
         if (turns - nearest).abs() > error {
-            return turns.floor() as i64;
+            return nearest as i64 - i64::from(nearest > turns);
         }
         let nearest = nearest as i64;
         let side = (self.side)(x);
@@ -47,6 +47,13 @@ impl Pieces {
         }
         (interval.magnitude() <= LARGEST_REDUCED).then(|| (self.index(interval.lo), self.index(interval.hi)))
     }
+}
+
+/// The integer nearest to `a`, which is less than 2⁵¹: its fraction is pushed out of the significand. Processors before SSE4.1,
+/// for which the project is compiled, have no instruction for it.
+fn nearest_integer(a: f64) -> f64 {
+    const SHIFT: f64 = 1.5 / f64::EPSILON;
+    (a + SHIFT) - SHIFT
 }
 
 /// A function that has the value 1 at the even ends of its pieces and −1 at the odd ones.
