@@ -172,3 +172,16 @@ fn a_wrong_model_is_refused_with_the_place() {
     render(&case, "x.vm", &["--set", "a=1"]).exits(2).mentions("no parameters");
     assert_eq!(case.names(), ["bytes.vm", "empty.vm", "wrong.vm", "x.vm"]);
 }
+
+#[test]
+fn what_needs_too_much_room_for_native_code_is_interpreted() {
+    let case = Case::new();
+    let ball =
+        |number: u32| format!("sqrt((x - {number}/99)^2 + (y - {number}/77)^2 + (z - {number}/55)^2) - 0.15");
+    let union = (0..130).map(ball).collect::<Vec<_>>().join(", ");
+    let arguments = ["render", &format!("min({union})"), "--box", "-2,2", "--size", "8", "-q"];
+    for (engine, output) in [("jit", "jit.png"), ("interp", "interp.png")] {
+        case.run(&[&arguments[..], &["--engine", engine, "-o", output]].concat()).exits(0);
+    }
+    assert_eq!(case.content("jit.png"), case.content("interp.png"));
+}

@@ -44,7 +44,7 @@ fn unless_too_large<K>(
     otherwise: impl FnOnce() -> Result<K, CompileError>,
 ) -> Result<K, CompileError> {
     match compiled {
-        Err(CompileError::TooLarge { .. }) => otherwise(),
+        Err(CompileError::TooLarge { .. } | CompileError::FrameTooLarge { .. }) => otherwise(),
         result => result,
     }
 }

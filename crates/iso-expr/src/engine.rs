@@ -133,6 +133,16 @@ pub enum CompileError {
         /// The engine's limit.
         allowed: usize,
     },
+    /// The program has more values at a time than the engine has room for.
+    #[error("the formula takes {given} bytes of stack; the {engine} engine allows {allowed}")]
+    FrameTooLarge {
+        /// The engine's name.
+        engine: &'static str,
+        /// The bytes of stack that its code would take.
+        given: u32,
+        /// The engine's limit.
+        allowed: u32,
+    },
     /// The code generator refused the program or the machine.
     #[error("the {engine} engine cannot compile this formula: {reason}")]
     Backend {

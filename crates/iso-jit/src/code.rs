@@ -10,6 +10,7 @@ use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Linkage, Module, default_libcall_names};
 use iso_expr::CompileError;
 
+use crate::engine::NAME;
 use crate::host::Limits;
 use crate::refused;
 use crate::symbols::{self, Calls};
@@ -99,11 +100,9 @@ impl Code {
         builder.finalize(module.target_config());
 
         module.define_function(function, context).map_err(|error| refused(&error))?;
-        let frame = frame_bytes(context);
-        if frame > LARGEST_FRAME {
-            return Err(refused(&format_args!(
-                "it needs {frame} bytes of stack, {LARGEST_FRAME} are allowed"
-            )));
+        let (given, allowed) = (frame_bytes(context), LARGEST_FRAME);
+        if given > allowed {
+            return Err(CompileError::FrameTooLarge { engine: NAME, given, allowed });
         }
         module.finalize_definitions().map_err(|error| refused(&error))?;
         Ok(module.get_finalized_function(function))

@@ -88,7 +88,7 @@ fn programs_beyond_the_limits_are_refused() {
     assert!(matches!(refusal, CompileError::TooLarge { engine: "jit", given: 120_000, .. }), "{refusal}");
     // So many values at once that they overflow the stack, not the limit of operations.
     let refusal = jit.boxes(&Random::new(1).wide_program(4_900)).err().unwrap();
-    assert!(matches!(refusal, CompileError::Backend { engine: "jit", .. }), "{refusal}");
+    assert!(matches!(refusal, CompileError::FrameTooLarge { engine: "jit", .. }), "{refusal}");
 }
 
 #[test]
