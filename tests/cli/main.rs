@@ -7,6 +7,7 @@ mod explain;
 mod formulas;
 mod limits;
 mod render;
+mod report;
 mod stress;
 mod trace;
 mod usage;

@@ -47,6 +47,38 @@ pub(crate) fn add_to<T>(phase: &mut f64, work: impl FnOnce() -> T) -> T {
     result
 }
 
+/// A time after which nothing new is begun.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Deadline(Option<Instant>);
+
+impl Deadline {
+    /// No deadline.
+    pub(crate) const NEVER: Self = Self(None);
+
+    /// So long from now; never for times that the clock cannot show.
+    pub(crate) fn after(duration: Duration) -> Self {
+        Self(Instant::now().checked_add(duration))
+    }
+
+    /// Whether it has come.
+    pub(crate) fn is_over(&self) -> bool {
+        self.0.is_some_and(|end| Instant::now() >= end)
+    }
+}
+
+/// The time that all threads of this process spent on processors so far, where the system tells.
+#[cfg(unix)]
+pub(crate) fn processor_time() -> Option<Duration> {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    Some(Duration::new(time.tv_sec.try_into().ok()?, time.tv_nsec.try_into().ok()?))
+}
+
+/// The time that all threads of this process spent on processors so far, where the system tells.
+#[cfg(not(unix))]
+pub(crate) fn processor_time() -> Option<Duration> {
+    None
+}
+
 /// How measurements of the same thing spread.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Spread {

@@ -13,6 +13,8 @@ mod flags;
 mod formula;
 mod hints;
 mod interruption;
+mod machine;
+mod measurement;
 mod method;
 mod output;
 mod pictures;
@@ -22,6 +24,7 @@ mod report;
 mod rounding;
 mod stress;
 mod summary;
+mod sweep;
 mod table;
 mod values;
 
@@ -51,6 +54,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Trace(flags) => commands::trace::run(flags),
         Command::Explain(flags) => commands::explain::run(*flags),
         Command::Bench(flags) => commands::bench::run(flags),
+        Command::Report(flags) => commands::report::run(*flags),
         Command::Stress(flags) => commands::stress::run(flags),
         Command::Completions { shell } => commands::completions::run(shell),
     }

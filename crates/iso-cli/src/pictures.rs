@@ -67,6 +67,7 @@ pub(crate) fn layers(flags: &LayerFlags) -> Layers {
         normals: points || flags.normals.is_some(),
         points,
         statuses: points,
+        outcomes: false,
     }
 }
 

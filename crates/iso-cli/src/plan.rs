@@ -19,7 +19,7 @@ pub(crate) fn plan(flags: &PictureFlags, program: &Program) -> Result<Plan, Fail
         program,
         method: method(&flags.method)?,
         projection: projection(&flags.camera),
-        box_is_given: flags.method.region.is_some(),
+        box_is_given: flags.method.region.region.is_some(),
         layers: layers(&flags.output),
         smoothing: flags.output.smooth,
     }))

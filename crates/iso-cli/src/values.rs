@@ -4,7 +4,7 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use glam::DVec3;
-use iso_grid::Region;
+use iso_grid::{GridSettings, Region};
 use iso_render::{Size, Smoothing};
 
 /// A finite number.
@@ -64,6 +64,13 @@ fn numbers(text: &str) -> Result<Vec<f64>, String> {
 pub(crate) fn size(text: &str) -> Result<Size, String> {
     let (width, height) = text.split_once(['x', 'X', '×']).unwrap_or((text, text));
     Size::new(count(width)?, count(height)?).map_err(|error| error.to_string())
+}
+
+/// A step between samples in parts of a cell.
+pub(crate) fn step(text: &str) -> Result<f64, String> {
+    let (step, allowed) = (finite(text)?, GridSettings::LEAST_STEP..=1.0);
+    let error = || format!("expected a step from {} to {}, found {step}", allowed.start(), allowed.end());
+    if allowed.contains(&step) { Ok(step) } else { Err(error()) }
 }
 
 /// How many pixels, across and down, are averaged.

@@ -141,7 +141,7 @@ mod tests {
     }
 
     fn picture() -> Picture {
-        let all = Layers { color: true, depth: true, normals: true, points: false, statuses: false };
+        let all = Layers { depth: true, normals: true, ..Layers::COLOR };
         let mut picture = Picture::with_room(Size::new(3, 2).unwrap(), all).unwrap();
         picture.color = (0..6).map(|pixel| [pixel, 40 * pixel, 255 - pixel]).collect();
         picture.depth = vec![f64::NAN; 6];

@@ -83,12 +83,14 @@ pub struct Layers {
     pub points: bool,
     /// The status of each pixel.
     pub statuses: bool,
+    /// How the search along each ray ended.
+    pub outcomes: bool,
 }
 
 impl Layers {
     /// The shaded picture alone.
     pub const COLOR: Self =
-        Self { color: true, depth: false, normals: false, points: false, statuses: false };
+        Self { color: true, depth: false, normals: false, points: false, statuses: false, outcomes: false };
 }
 
 /// A picture: the layers that were asked for, rows from top to bottom, and what they took.
@@ -108,6 +110,8 @@ pub struct Picture {
     pub points: Vec<DVec3>,
     /// The status of each pixel.
     pub statuses: Vec<Status>,
+    /// How the search along each ray ended.
+    pub outcomes: Vec<Outcome>,
     /// Pixels by status.
     pub counts: StatusCounts,
     /// The work of tracing.
@@ -132,6 +136,7 @@ impl Picture {
             normals: filled(layers.normals, size, DVec3::ZERO)?,
             points: filled(layers.points, size, DVec3::NAN)?,
             statuses: filled(layers.statuses, size, Status::Unfinished)?,
+            outcomes: filled(layers.outcomes, size, Outcome::Miss)?,
             counts: StatusCounts { unfinished: size.pixels() as u64, ..StatusCounts::default() },
             counters: Counters::default(),
             trace_seconds: 0.0,

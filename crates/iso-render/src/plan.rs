@@ -31,7 +31,7 @@ pub struct Plan {
     constants: [Decision<Given>; 4],
     kernels: [Decision<Kernel>; 5],
     passes: [Decision<Pass>; 6],
-    buffers: [Decision<Buffer>; 5],
+    buffers: [Decision<Buffer>; 6],
 }
 
 /// Whether something is part of the plan.
@@ -114,6 +114,8 @@ pub enum Buffer {
     Points,
     /// [`Layers::statuses`].
     Statuses,
+    /// [`Layers::outcomes`].
+    Outcomes,
 }
 
 impl Buffer {
@@ -125,6 +127,7 @@ impl Buffer {
             Self::Normals => "normals",
             Self::Points => "points",
             Self::Statuses => "statuses",
+            Self::Outcomes => "outcomes",
         }
     }
 }
@@ -141,8 +144,15 @@ impl Plan {
             kernels: Kernel::ALL.map(|kernel| decide(kernel, wanted.kernel(kernel))),
             passes: [Pass::Fit, Pass::Classify, Pass::Trace, Pass::Normals, Pass::Shade, Pass::Smooth]
                 .map(|pass| decide(pass, wanted.pass(pass))),
-            buffers: [Buffer::Color, Buffer::Depth, Buffer::Normals, Buffer::Points, Buffer::Statuses]
-                .map(|buffer| decide(buffer, wanted.buffer(buffer))),
+            buffers: [
+                Buffer::Color,
+                Buffer::Depth,
+                Buffer::Normals,
+                Buffer::Points,
+                Buffer::Statuses,
+                Buffer::Outcomes,
+            ]
+            .map(|buffer| decide(buffer, wanted.buffer(buffer))),
         }
     }
 
@@ -288,13 +298,14 @@ impl Wanted<'_> {
     }
 
     fn buffer(&self, buffer: Buffer) -> Verdict {
-        let Layers { color, depth, normals, points, statuses } = self.layers;
+        let Layers { color, depth, normals, points, statuses, outcomes } = self.layers;
         let wanted = match buffer {
             Buffer::Color => color,
             Buffer::Depth => depth,
             Buffer::Normals => normals,
             Buffer::Points => points,
             Buffer::Statuses => statuses,
+            Buffer::Outcomes => outcomes,
         };
         (wanted, if wanted { "an output needs it" } else { "no output needs it" })
     }

@@ -181,6 +181,9 @@ impl Finished {
             if tile.layers.normals {
                 picture.normals[to.clone()].copy_from_slice(&tile.normals[from.clone()]);
             }
+            if tile.layers.outcomes {
+                picture.outcomes[to.clone()].copy_from_slice(&tile.outcomes[from.clone()]);
+            }
             for (place, pixel) in from.zip(to) {
                 if tile.layers.depth {
                     picture.depth[pixel] = tile.found(place).unwrap_or(f64::NAN);

@@ -11,8 +11,9 @@ use iso_render::{
 };
 
 const PAPER: &str = "(x^2+y^2-1)^2 + 4z^2 + 0.5x = 0.2";
-const ALL: Layers = Layers { color: true, depth: true, normals: true, points: true, statuses: true };
-const DEPTH: Layers = Layers { color: false, depth: true, normals: false, points: false, statuses: false };
+const ALL: Layers =
+    Layers { color: true, depth: true, normals: true, points: true, statuses: true, outcomes: true };
+const DEPTH: Layers = Layers { color: false, depth: true, ..Layers::COLOR };
 const ORTHOGRAPHIC: Projection = Projection::Orthographic { view_width: None };
 
 fn methods() -> [Method; 4] {
@@ -79,7 +80,7 @@ fn layers_left_out_are_not_computed_and_change_no_other() {
     for method in methods() {
         let (all, _) = draw(&program, &Plan::new(&wanted(&program, method, ALL)));
         assert!(all.counters.gradient_evaluations > 0);
-        let every_choice = (0..32).map(|choice| {
+        let every_choice = (0..64).map(|choice| {
             let chosen = |layer: u32| choice >> layer & 1 == 1;
             Layers {
                 color: chosen(0),
@@ -87,6 +88,7 @@ fn layers_left_out_are_not_computed_and_change_no_other() {
                 normals: chosen(2),
                 points: chosen(3),
                 statuses: chosen(4),
+                outcomes: chosen(5),
             }
         });
         for layers in every_choice {
@@ -99,10 +101,12 @@ fn layers_left_out_are_not_computed_and_change_no_other() {
             assert_eq!(bits(&picture.normals), bits(&all.normals[..full(layers.normals)]));
             assert_eq!(bits(&picture.points), bits(&all.points[..full(layers.points)]));
             assert_eq!(picture.statuses, all.statuses[..full(layers.statuses)]);
+            assert_eq!(picture.outcomes, all.outcomes[..full(layers.outcomes)]);
             assert_eq!(picture.counts, all.counts);
             assert_eq!(picture.counters.gradient_evaluations > 0, plan.runs(Pass::Normals));
             let kept: Vec<bool> = plan.buffers().iter().map(|buffer| buffer.taken).collect();
-            assert_eq!(kept, [layers.color, layers.depth, layers.normals, layers.points, layers.statuses]);
+            let Layers { color, depth, normals, points, statuses, outcomes } = layers;
+            assert_eq!(kept, [color, depth, normals, points, statuses, outcomes]);
             assert_eq!(plan.buffers()[1].subject, Buffer::Depth);
         }
     }

@@ -10,7 +10,8 @@ use iso_render::{
     Wanted, render,
 };
 
-const ALL: Layers = Layers { color: true, depth: true, normals: true, points: true, statuses: true };
+const ALL: Layers =
+    Layers { color: true, depth: true, normals: true, points: true, statuses: true, outcomes: true };
 
 /// x² + y² + z² − 1
 fn sphere() -> Program {

@@ -7,17 +7,18 @@ use std::time::Duration;
 
 use glam::DVec3;
 use iso_expr::engine::Points;
-use iso_expr::{CompileError, Engine, Interpreter, Program, Scratch};
-use iso_grid::{Region, Surface};
+use iso_expr::{CompileError, Engine, Interpreter, Scratch};
+use iso_grid::{Method, Region, Surface};
 use iso_jit::Jit;
-use iso_render::{Camera, Layers, Plan, Projection, Scene, Shading, Size, Smoothing, View, Wanted, render};
+use iso_render::{Camera, Projection, Size, View};
 use serde::Serialize;
 
-use crate::clock::{Spread, milliseconds, timed};
+use crate::clock::{Deadline, Spread, timed};
 use crate::engine::threads;
 use crate::failure::Failure;
 use crate::flags::BenchFlags;
 use crate::formula::{minus_level, understand};
+use crate::measurement::{Subject, in_turns};
 use crate::method::{method, region};
 use crate::output::to_standard_output;
 
@@ -30,19 +31,12 @@ const LONG_ENOUGH: Duration = Duration::from_millis(5);
 pub(crate) fn run(flags: BenchFlags) -> Result<(), Failure> {
     let formula = understand(&flags.formula)?;
     let program = minus_level(&formula, flags.level.level)?.simplified();
-    let region = region(flags.method.region, &Surface::new(Arc::new(Interpreter), program.clone()))?;
+    let region = region(flags.method.region.region, &Surface::new(Arc::new(Interpreter), program.clone()))?;
+    let size = flags.measurement.size;
+    let camera = Camera::new(View::DEFAULT, Projection::DEFAULT, &region, size)?;
     let bench = Bench {
-        plan: Plan::new(&Wanted {
-            program: &program,
-            method: method(&flags.method)?,
-            projection: Projection::DEFAULT,
-            box_is_given: true,
-            layers: Layers::COLOR,
-            smoothing: Smoothing::NONE,
-        }),
-        program,
-        region,
-        size: flags.measurement.size,
+        subject: Subject { program, region, projection: Projection::DEFAULT, camera, size },
+        method: method(&flags.method)?,
         points: spread_points(&region),
     };
     let runs = flags.measurement.runs.get() as usize;
@@ -58,10 +52,8 @@ pub(crate) fn run(flags: BenchFlags) -> Result<(), Failure> {
 
 /// What is measured.
 struct Bench {
-    program: Program,
-    plan: Plan,
-    region: Region,
-    size: Size,
+    subject: Subject,
+    method: Method,
     points: [Vec<f64>; 3],
 }
 
@@ -77,26 +69,25 @@ struct Round {
 impl Bench {
     fn report(&self, runs: usize) -> Result<Report, Failure> {
         let engines: [Arc<dyn Engine>; 2] = [Arc::new(Interpreter), Arc::new(Jit::new()?)];
-        // A round that does not count fills caches and wakes the processor.
-        for engine in &engines {
-            self.round(engine)?;
-        }
         let mut rounds = [Vec::new(), Vec::new()];
-        for _ in 0..runs {
-            for (engine, rounds) in engines.iter().zip(&mut rounds) {
-                rounds.push(self.round(engine)?);
+        // The first round does not count: it fills caches and wakes the processor.
+        in_turns(engines.len(), runs + 1, Deadline::NEVER, |turn| {
+            let measured = self.round(&engines[turn.candidate])?;
+            if turn.round > 0 {
+                rounds[turn.candidate].push(measured);
             }
-        }
+            Ok::<(), Failure>(())
+        })?;
         let [interpreter, native] = rounds.map(|rounds| Measured::of(&rounds));
-        let [width, height] = [self.size.width(), self.size.height()];
+        let [width, height] = [self.subject.size.width(), self.subject.size.height()];
         Ok(Report {
-            operations: self.program.operations(),
-            method: self.plan.method().name(),
+            operations: self.subject.program.operations(),
+            method: self.method.name(),
             width,
             height,
             runs,
             gain: Gain::of(&interpreter, &native),
-            break_even_pixels: break_even(&interpreter, &native, self.size),
+            break_even_pixels: break_even(&interpreter, &native, self.subject.size),
             interpreter,
             native,
         })
@@ -105,18 +96,18 @@ impl Bench {
     fn round(&self, engine: &Arc<dyn Engine>) -> Result<Round, Failure> {
         let point_nanoseconds = self.point_by_point(engine.as_ref())?;
         let batch_nanoseconds = self.in_batches(engine.as_ref())?;
-        let (compile, picture) = self.picture(engine)?;
+        let picture = self.subject.measure(engine, &self.method)?;
         Ok(Round {
             point_nanoseconds,
             batch_nanoseconds,
-            compile_milliseconds: milliseconds(compile),
-            picture_milliseconds: milliseconds(picture),
+            compile_milliseconds: picture.phases.compile,
+            picture_milliseconds: picture.total - picture.phases.compile,
         })
     }
 
     /// Nanoseconds of one evaluation when each point is asked for by itself.
     fn point_by_point(&self, engine: &dyn Engine) -> Result<f64, CompileError> {
-        let kernel = engine.point(&self.program)?;
+        let kernel = engine.point(&self.subject.program)?;
         let (mut scratch, mut value) = (Scratch::default(), [0.0]);
         let [x, y, z] = &self.points;
         Ok(nanoseconds_each(|| {
@@ -129,36 +120,13 @@ impl Bench {
 
     /// Nanoseconds of one evaluation when all points are asked for together.
     fn in_batches(&self, engine: &dyn Engine) -> Result<f64, CompileError> {
-        let kernel = engine.batch(&self.program)?;
+        let kernel = engine.batch(&self.subject.program)?;
         let (mut scratch, mut values) = (Scratch::default(), vec![0.0; POINTS]);
         let [x, y, z] = &self.points;
         Ok(nanoseconds_each(|| {
             kernel.evaluate(&mut scratch, Points { x, y, z }, &mut values);
             black_box(&mut values);
         }))
-    }
-
-    /// The times of compiling a picture's kernels, and of everything else up to its colours.
-    fn picture(&self, engine: &Arc<dyn Engine>) -> Result<(Duration, Duration), Failure> {
-        let surface = Surface::new(Arc::clone(engine), self.program.clone());
-        let (compiled, compile) = timed(|| self.plan.compile(&surface));
-        compiled?;
-        let (drawn, picture) = timed(|| {
-            let tracer = self.plan.tracer(&surface, self.region)?;
-            let camera = Camera::new(View::DEFAULT, Projection::DEFAULT, &self.region, self.size)?;
-            let shading = Shading::new(&camera, false);
-            let scene = Scene {
-                plan: &self.plan,
-                surface: &surface,
-                tracer: tracer.as_ref(),
-                camera: &camera,
-                shading: &shading,
-            };
-            black_box(render(&scene, self.size, &|_, _| ())?);
-            Ok::<(), Failure>(())
-        });
-        drawn?;
-        Ok((compile, picture))
     }
 }
 

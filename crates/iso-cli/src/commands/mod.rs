@@ -5,5 +5,6 @@ pub(crate) mod completions;
 pub(crate) mod eval;
 pub(crate) mod explain;
 pub(crate) mod render;
+pub(crate) mod report;
 pub(crate) mod stress;
 pub(crate) mod trace;

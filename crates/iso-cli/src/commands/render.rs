@@ -92,7 +92,7 @@ impl Request {
             plan: plan(&flags, &program)?,
             program,
             operations_before,
-            region: flags.method.region,
+            region: flags.method.region.region,
             camera: flags.camera,
             smoothing,
             drawn: smoothing

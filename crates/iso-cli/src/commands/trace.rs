@@ -32,7 +32,7 @@ pub(crate) fn run(flags: TraceFlags) -> Result<(), Failure> {
     let rays = read_rays(&flags.tables.rays)?;
     let surface = Surface::new(engine(flags.engine.engine)?, program).stopped_by(interruption.stop());
     let followed = threads(&flags.threads)?.install(|| {
-        let region = region(flags.method.region, &surface)?;
+        let region = region(flags.method.region.region, &surface)?;
         let tracer = method.prepare(&surface, region).map_err(|error| interruption.explain(error))?;
         Ok::<_, Failure>(follow(&surface, tracer.as_ref(), &rays)?)
     })?;

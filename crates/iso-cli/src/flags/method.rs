@@ -5,15 +5,23 @@ use iso_grid::Region;
 
 use crate::values;
 
-/// The region and the method of intersection.
+/// The region.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Region and method")]
-pub(crate) struct MethodFlags {
+pub(crate) struct RegionFlag {
     /// The box in which the surface is looked for [default: one that fits it, or -2,2 where it goes on for ever]
     ///
     /// `a,b` reaches from a to b along every axis; six numbers are xmin,ymin,zmin,xmax,ymax,zmax.
     #[arg(long = "box", value_name = "BOX", value_parser = values::region, allow_hyphen_values = true)]
     pub(crate) region: Option<Region>,
+}
+
+/// The region and the method of intersection.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Region and method")]
+pub(crate) struct MethodFlags {
+    #[command(flatten)]
+    pub(crate) region: RegionFlag,
 
     /// The method of intersection
     #[arg(long, value_name = "METHOD", value_enum, default_value_t = MethodName::Certified)]
@@ -86,4 +94,14 @@ pub(crate) enum EngineName {
     Jit,
     /// The interpreter
     Interp,
+}
+
+impl EngineName {
+    /// The engine's name on the command line.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Jit => "jit",
+            Self::Interp => "interp",
+        }
+    }
 }

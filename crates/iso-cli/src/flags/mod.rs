@@ -9,6 +9,7 @@ mod formula;
 mod limit;
 mod method;
 mod render;
+mod report;
 mod stress;
 mod trace;
 
@@ -18,8 +19,9 @@ pub(crate) use eval::EvalFlags;
 pub(crate) use explain::{ExplainFlags, KernelName, Section};
 pub(crate) use formula::{FormulaFlags, LevelFlag};
 pub(crate) use limit::LimitFlags;
-pub(crate) use method::{EngineFlag, EngineName, MethodFlags, MethodName, ThreadsFlag};
+pub(crate) use method::{EngineFlag, EngineName, MethodFlags, MethodName, RegionFlag, ThreadsFlag};
 pub(crate) use render::{LayerFlags, PictureFlags, RenderFlags, SummaryFlags};
+pub(crate) use report::ReportFlags;
 pub(crate) use stress::StressFlags;
 pub(crate) use trace::TraceFlags;
 
@@ -50,6 +52,8 @@ pub(crate) enum Command {
     Explain(Box<ExplainFlags>),
     /// Measure the interpreter against native code
     Bench(BenchFlags),
+    /// Measure what error each method and setting buys for what time
+    Report(Box<ReportFlags>),
     /// Run the suite of hard cases and hold every method against what is proven
     Stress(StressFlags),
     /// Write a completion script for a shell

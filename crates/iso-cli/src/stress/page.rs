@@ -84,6 +84,7 @@ fn thumbnail(view: &Seen, answers: &Answers, verdicts: &[Verdict]) -> Result<Vec
         normals: Vec::new(),
         points: Vec::new(),
         statuses: Vec::new(),
+        outcomes: Vec::new(),
         counts: StatusCounts::default(),
         counters: Counters::default(),
         trace_seconds: 0.0,
