@@ -167,7 +167,7 @@ impl Model {
     }
 
     /// (x, y, z) − point.
-    fn from_point(&mut self, point: DVec3) -> [Value; 3] {
+    fn offset_from(&mut self, point: DVec3) -> [Value; 3] {
         [("var-x", point.x), ("var-y", point.y), ("var-z", point.z)].map(|(variable, coordinate)| {
             let (variable, coordinate) = (self.line(variable.to_owned()), self.constant(coordinate));
             self.apply("sub", &[variable, coordinate])
@@ -185,13 +185,13 @@ impl Model {
     }
 
     fn ball(&mut self, center: DVec3, radius: f64) -> Value {
-        let coordinates = self.from_point(center);
+        let coordinates = self.offset_from(center);
         self.beyond(&coordinates, radius)
     }
 
     /// A cylinder that stands on `foot`.
     fn cylinder(&mut self, foot: DVec3, radius: f64, height: f64) -> Value {
-        let [x, y, z] = self.from_point(foot + DVec3::Z * (0.5 * height));
+        let [x, y, z] = self.offset_from(foot + DVec3::Z * (0.5 * height));
         let (round, slab) = (self.beyond(&[x, y], radius), self.beyond(&[z], 0.5 * height));
         self.apply("max", &[round, slab])
     }
@@ -204,7 +204,7 @@ impl Model {
 
     /// All points no farther than `radius` from a segment.
     fn capsule(&mut self, start: DVec3, way: DVec3, radius: f64) -> Value {
-        let from_start = self.from_point(start);
+        let from_start = self.offset_from(start);
         let scaled = (way / way.length_squared()).to_array().map(|component| self.constant(component));
         let parts = [0, 1, 2].map(|axis| self.apply("mul", &[from_start[axis], scaled[axis]]));
         let along = self.apply("add", &[parts[0], parts[1]]);
