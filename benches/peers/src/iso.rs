@@ -90,7 +90,8 @@ impl Iso {
         let plan = Plan::new(&Wanted {
             program: self.surface.program(),
             method: self.method,
-            projection: Projection::Orthographic { view_width: None },
+            has_parameters: false,
+            projection: Some(Projection::Orthographic { view_width: None }),
             box_is_given: true,
             layers,
             smoothing: Smoothing::NONE,

@@ -90,7 +90,8 @@ impl Subject {
         let plan = Plan::new(&Wanted {
             program: &self.program,
             method: *method,
-            projection: self.projection,
+            has_parameters: false,
+            projection: Some(self.projection),
             box_is_given: true,
             layers,
             smoothing: Smoothing::NONE,

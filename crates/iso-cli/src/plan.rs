@@ -2,9 +2,9 @@
 
 use std::io::{self, Write};
 
-use iso_expr::{Axis, Program};
-use iso_grid::{Kernel, Surface};
-use iso_render::{Buffer, Decision, Given, Pass, Plan, Wanted};
+use iso_expr::{Axis, Formula, Program};
+use iso_grid::{Kernel, Method, Surface};
+use iso_render::{Buffer, Decision, Given, Layers, Pass, Plan, Smoothing, Wanted};
 use serde::Serialize;
 
 use crate::camera::projection;
@@ -13,16 +13,30 @@ use crate::flags::PictureFlags;
 use crate::method::method;
 use crate::pictures::layers;
 
-/// The plan of the picture that `flags` describe, of the surface of a simplified program.
-pub(crate) fn plan(flags: &PictureFlags, program: &Program) -> Result<Plan, Failure> {
+/// The plan of the picture that `flags` describe, of the surface of a formula whose F − C is simplified to `program`.
+pub(crate) fn plan(flags: &PictureFlags, formula: &Formula, program: &Program) -> Result<Plan, Failure> {
     Ok(Plan::new(&Wanted {
         program,
         method: method(&flags.method)?,
-        projection: projection(&flags.camera),
+        has_parameters: !formula.parameters().is_empty(),
+        projection: Some(projection(&flags.camera)),
         box_is_given: flags.method.region.region.is_some(),
         layers: layers(&flags.output),
         smoothing: flags.output.smooth,
     }))
+}
+
+/// The plan of following rays that are no picture's by `method`, up to outcomes and normals.
+pub(crate) fn plan_of_rays(method: Method, program: &Program, box_is_given: bool) -> Plan {
+    Plan::new(&Wanted {
+        program,
+        method,
+        has_parameters: false,
+        projection: None,
+        box_is_given,
+        layers: Layers { normals: true, outcomes: true, ..Layers::default() },
+        smoothing: Smoothing::NONE,
+    })
 }
 
 /// A plan as it is reported. Its fields are the keys of the object `plan`.

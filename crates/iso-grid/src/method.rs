@@ -1,6 +1,6 @@
 //! The methods of intersection, by name and settings.
 
-use crate::{Certified, Direct, Grid, GridError, GridSettings, Kernel, Octree, Region, Surface, Tracer};
+use crate::{Certified, Direct, Grid, GridError, GridSettings, Octree, Region, Surface, Tracer};
 
 /// A method of intersection with its settings, not yet prepared for a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,16 +32,6 @@ impl Method {
             Self::Grid(_) => "grid",
             Self::Octree(_) => "octree",
             Self::Direct { .. } => "direct",
-        }
-    }
-
-    /// The kernels that the method follows rays with.
-    pub fn kernels(&self) -> &'static [Kernel] {
-        match self {
-            Self::Certified { .. } => {
-                &[Kernel::Values, Kernel::ValueEnclosures, Kernel::GradientEnclosures, Kernel::RoundingBounds]
-            }
-            Self::Grid(_) | Self::Octree(_) | Self::Direct { .. } => &[Kernel::Values],
         }
     }
 

@@ -12,8 +12,10 @@ pub struct Wanted<'a> {
     pub program: &'a Program,
     /// How rays are followed.
     pub method: Method,
-    /// How space is projected onto the picture.
-    pub projection: Projection,
+    /// Whether the formula has parameters.
+    pub has_parameters: bool,
+    /// How space is projected onto the picture; `None` for rays that are no picture's.
+    pub projection: Option<Projection>,
     /// Whether the box is given, so that none needs to be fitted.
     pub box_is_given: bool,
     /// What is kept of the picture.
@@ -241,12 +243,17 @@ impl Wanted<'_> {
     fn constant(&self, given: Given) -> Verdict {
         match (given, self.projection) {
             (Given::Level, _) => (true, "the kernels compute F − C"),
-            (Given::Parameters, _) => (true, "their values are folded while simplifying"),
-            (Given::Direction, Projection::Orthographic { .. }) => (
+            (Given::Parameters, _) if self.has_parameters => {
+                (true, "their values are folded while simplifying")
+            }
+            (Given::Parameters, _) => (false, "the formula has none"),
+            (Given::Direction, Some(Projection::Orthographic { .. })) => (
                 false,
                 "all rays share one, set up once; kernels take points, so another view compiles nothing",
             ),
-            (Given::Direction, Projection::Perspective { .. }) => (false, "each ray has its own"),
+            (Given::Direction, Some(Projection::Perspective { .. }) | None) => {
+                (false, "each ray has its own")
+            }
             (Given::Position, _) => (false, "kernels take points, so another view compiles nothing"),
         }
     }

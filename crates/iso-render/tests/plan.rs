@@ -33,7 +33,8 @@ fn wanted(program: &Program, method: Method, layers: Layers) -> Wanted<'_> {
     Wanted {
         program,
         method,
-        projection: ORTHOGRAPHIC,
+        has_parameters: false,
+        projection: Some(ORTHOGRAPHIC),
         box_is_given: true,
         layers,
         smoothing: Smoothing::NONE,
@@ -57,6 +58,10 @@ fn draw(program: &Program, plan: &Plan) -> (Picture, Vec<Kernel>) {
 
 fn planned(plan: &Plan) -> Vec<Kernel> {
     plan.kernels().iter().filter(|kernel| kernel.taken).map(|kernel| kernel.subject).collect()
+}
+
+fn folded(plan: &Plan) -> Vec<Given> {
+    plan.constants().iter().filter(|given| given.taken).map(|given| given.subject).collect()
 }
 
 fn bits(vectors: &[DVec3]) -> Vec<[u64; 3]> {
@@ -164,9 +169,17 @@ fn another_view_takes_the_same_kernels() {
     for method in methods() {
         let parallel = Plan::new(&wanted(&program, method, ALL));
         let spreading =
-            Plan::new(&Wanted { projection: Projection::DEFAULT, ..wanted(&program, method, ALL) });
+            Plan::new(&Wanted { projection: Some(Projection::DEFAULT), ..wanted(&program, method, ALL) });
         assert_eq!(planned(&parallel), planned(&spreading));
-        let folded = parallel.constants().iter().filter(|given| given.taken).map(|given| given.subject);
-        assert_eq!(folded.collect::<Vec<_>>(), [Given::Level, Given::Parameters]);
+        assert_eq!(folded(&parallel), [Given::Level]);
     }
+}
+
+#[test]
+fn parameters_are_folded_where_there_are_some() {
+    let program = program(PAPER);
+    let plain = wanted(&program, Method::CERTIFIED, ALL);
+    assert_eq!(folded(&Plan::new(&plain)), [Given::Level]);
+    let with_parameters = Plan::new(&Wanted { has_parameters: true, ..plain });
+    assert_eq!(folded(&with_parameters), [Given::Level, Given::Parameters]);
 }

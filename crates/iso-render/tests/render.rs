@@ -47,7 +47,8 @@ fn picture_until(stop: &Stop, size: Size, threads: usize, last: u64) -> Picture 
     let plan = Plan::new(&Wanted {
         program: surface.program(),
         method: Method::Certified { accuracy: Certified::ACCURACY },
-        projection,
+        has_parameters: false,
+        projection: Some(projection),
         box_is_given: true,
         layers: ALL,
         smoothing: Smoothing::NONE,

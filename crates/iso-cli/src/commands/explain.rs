@@ -91,11 +91,12 @@ fn sections(flags: &ExplainFlags) -> Result<Vec<(Section, Shown)>, Failure> {
     let source = Source::read(&picture.formula.formula)?;
     let (text, parse_time) = timed(|| source.parse());
     let text = text?;
-    let (program, lower_time) = timed(|| {
+    let (lowered, lower_time) = timed(|| {
         let formula = source.lower(&text, &picture.formula.settings)?;
-        minus_level(&formula, picture.level.level)
+        let program = minus_level(&formula, picture.level.level)?;
+        Ok::<_, Failure>((formula, program))
     });
-    let program = program?;
+    let (formula, program) = lowered?;
     let hints = timed(|| hints(&program));
     let simplified = timed(|| program.simplified());
     let gradient = timed(|| simplified.0.with_gradient().simplified());
@@ -106,7 +107,7 @@ fn sections(flags: &ExplainFlags) -> Result<Vec<(Section, Shown)>, Failure> {
         Text::Model(_) => String::new(),
     };
     let surface = Surface::new(Arc::new(Interpreter), simplified.0.clone());
-    let plan = PlanReport::new(&plan(picture, &simplified.0)?, &surface, program.operations());
+    let plan = PlanReport::new(&plan(picture, &formula, &simplified.0)?, &surface, program.operations());
     let stages = [
         (Section::Tree, Stage::new(tree.lines().count(), "lines", parse_time, tree)),
         (Section::Program, Stage::program(&(program, lower_time))),

@@ -83,13 +83,13 @@ impl Request {
         let smoothing = flags.output.smooth;
         let files = PictureFiles::resolve(&flags.output)?;
         let source = Source::read(&flags.formula.formula)?;
-        let (operations_before, program) = add_to(&mut phases.parse, || {
+        let (formula, operations_before, program) = add_to(&mut phases.parse, || {
             let formula = source.lower(&source.parse()?, &flags.formula.settings)?;
             let program = minus_level(&formula, flags.level.level)?;
-            Ok::<_, Failure>((program.operations(), program.simplified()))
+            Ok::<_, Failure>((formula, program.operations(), program.simplified()))
         })?;
         Ok(Self {
-            plan: plan(&flags, &program)?,
+            plan: plan(&flags, &formula, &program)?,
             program,
             operations_before,
             region: flags.method.region.region,

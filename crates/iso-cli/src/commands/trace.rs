@@ -17,6 +17,7 @@ use crate::interruption::Interruption;
 use crate::method::{method, region};
 use crate::output::Destination;
 use crate::pictures::status_name;
+use crate::plan::plan_of_rays;
 use crate::table::{self, TableError, digits, write_row};
 
 /// Rays that a thread follows at a time.
@@ -30,10 +31,11 @@ pub(crate) fn run(flags: TraceFlags) -> Result<(), Failure> {
     let formula = understand(&flags.formula)?;
     let program = minus_level(&formula, flags.level.level)?.simplified();
     let rays = read_rays(&flags.tables.rays)?;
+    let plan = plan_of_rays(method, &program, flags.method.region.region.is_some());
     let surface = Surface::new(engine(flags.engine.engine)?, program).stopped_by(interruption.stop());
     let followed = threads(&flags.threads)?.install(|| {
         let region = region(flags.method.region.region, &surface)?;
-        let tracer = method.prepare(&surface, region).map_err(|error| interruption.explain(error))?;
+        let tracer = plan.tracer(&surface, region).map_err(|error| interruption.explain(error))?;
         Ok::<_, Failure>(follow(&surface, tracer.as_ref(), &rays)?)
     })?;
     let unfinished = followed.iter().filter(|end| end.is_none()).count();

@@ -15,6 +15,7 @@ use crate::comparison::{Answers, Verdict, compare};
 use crate::engine::engine;
 use crate::failure::Failure;
 use crate::flags::EngineName;
+use crate::plan::plan_of_rays;
 
 /// The methods as they are without flags, the certified one first: the others are held against it.
 const METHODS: [fn() -> Method; 4] = [
@@ -165,9 +166,10 @@ impl Measured {
     ) -> Result<(), Failure> {
         let may_be_open = case.open.is_some();
         for (number, method) in METHODS.iter().map(|method| method()).enumerate() {
-            method.kernels().iter().try_for_each(|kernel| surface.compile(*kernel))?;
+            let plan = plan_of_rays(method, surface.program(), true);
+            plan.compile(surface)?;
             let (traced, time) = timed(|| {
-                let tracer = method.prepare(surface, case.region)?;
+                let tracer = plan.tracer(surface, case.region)?;
                 let outcomes = trace(tracer.as_ref(), &self.view.rays, self.view.size);
                 Ok::<_, Failure>((tracer, outcomes))
             });
