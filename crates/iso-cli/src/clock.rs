@@ -1,14 +1,15 @@
-//! The one place that takes times.
+//! Times on the wall and on processors, and how they spread.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use iso_render::Stopwatch;
 use serde::Serialize;
 
 /// Runs `work` and says how long it took on the clock on the wall.
 pub(crate) fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
-    let start = Instant::now();
+    let watch = Stopwatch::start();
     let result = work();
-    (result, start.elapsed())
+    (result, watch.elapsed())
 }
 
 /// A duration in milliseconds.
@@ -49,20 +50,25 @@ pub(crate) fn add_to<T>(phase: &mut f64, work: impl FnOnce() -> T) -> T {
 
 /// A time after which nothing new is begun.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Deadline(Option<Instant>);
+pub(crate) struct Deadline {
+    watch: Stopwatch,
+    allowed: Duration,
+}
 
 impl Deadline {
-    /// No deadline.
-    pub(crate) const NEVER: Self = Self(None);
+    /// So long from now.
+    pub(crate) fn after(allowed: Duration) -> Self {
+        Self { watch: Stopwatch::start(), allowed }
+    }
 
-    /// So long from now; never for times that the clock cannot show.
-    pub(crate) fn after(duration: Duration) -> Self {
-        Self(Instant::now().checked_add(duration))
+    /// No deadline.
+    pub(crate) fn never() -> Self {
+        Self::after(Duration::MAX)
     }
 
     /// Whether it has come.
     pub(crate) fn is_over(&self) -> bool {
-        self.0.is_some_and(|end| Instant::now() >= end)
+        self.watch.elapsed() >= self.allowed
     }
 }
 

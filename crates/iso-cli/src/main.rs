@@ -12,6 +12,7 @@ mod failure;
 mod flags;
 mod formula;
 mod hints;
+mod html;
 mod interruption;
 mod machine;
 mod measurement;

@@ -143,7 +143,7 @@ mod tests {
     #[test]
     fn candidates_take_turns() {
         let mut turns = Vec::new();
-        let done = in_turns(2, 2, Deadline::NEVER, |turn| {
+        let done = in_turns(2, 2, Deadline::never(), |turn| {
             turns.push((turn.round, turn.candidate));
             Ok::<(), ()>(())
         });

@@ -1,16 +1,17 @@
 //! A progress bar for pictures that take a while.
 
 use std::sync::OnceLock;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use iso_render::Stopwatch;
 
 /// Work that takes less than this shows no bar.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// A bar that appears on a terminal when the work takes longer than half a second.
 pub(crate) struct Progress {
-    start: Instant,
+    watch: Stopwatch,
     is_wanted: bool,
     bar: OnceLock<ProgressBar>,
 }
@@ -18,12 +19,12 @@ pub(crate) struct Progress {
 impl Progress {
     /// Begins now. Nothing is ever shown unless `is_wanted`, nor where standard error is no terminal.
     pub(crate) fn new(is_wanted: bool) -> Self {
-        Self { start: Instant::now(), is_wanted, bar: OnceLock::new() }
+        Self { watch: Stopwatch::start(), is_wanted, bar: OnceLock::new() }
     }
 
     /// Tells that `done` of `all` pixels are finished.
     pub(crate) fn report(&self, done: u64, all: u64) {
-        if !self.is_wanted || self.start.elapsed() < PATIENCE {
+        if !self.is_wanted || self.watch.elapsed() < PATIENCE {
             return;
         }
         let bar = self.bar.get_or_init(|| {

@@ -4,6 +4,7 @@
 //! what was found into colours, and the resulting [`Picture`] writes itself to files.
 
 mod camera;
+mod clock;
 mod color;
 mod encode;
 mod picture;
@@ -14,6 +15,7 @@ mod size;
 mod smooth;
 
 pub use camera::{Camera, CameraError, Projection, View};
+pub use clock::Stopwatch;
 pub use color::{Color, color_from_srgb, srgb_from_color};
 pub use encode::{EncodeError, ImageFormat};
 pub use picture::{Layers, Picture, Status, StatusCounts};

@@ -1,7 +1,7 @@
 //! Rendering: tiles of pixels on all cores.
 
 use std::sync::Mutex;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use glam::DVec3;
 use iso_expr::CompileError;
@@ -9,6 +9,7 @@ use iso_grid::{Counters, Outcome, Ray, Surface, Tracer, Workspace, normals};
 use rayon::prelude::*;
 use thiserror::Error;
 
+use crate::clock::Stopwatch;
 use crate::color::srgb_from_color;
 use crate::{Camera, Layers, Pass, Picture, Plan, Shading, Size, Status, StatusCounts};
 
@@ -55,7 +56,7 @@ const TILE: u32 = 64;
 /// # Errors
 /// When memory does not suffice or a kernel cannot be compiled.
 pub fn render(scene: &Scene<'_>, size: Size, progress: Progress<'_>) -> Result<Picture, RenderError> {
-    let start = Instant::now();
+    let watch = Stopwatch::start();
     let layers = scene.plan.layers();
     let picture = Picture::with_room(size, layers).ok_or(RenderError::OutOfMemory(size))?;
     let finished = Mutex::new(Finished { picture, pixels: 0, trace: Duration::ZERO, shade: Duration::ZERO });
@@ -67,7 +68,7 @@ pub fn render(scene: &Scene<'_>, size: Size, progress: Progress<'_>) -> Result<P
         Ok::<(), RenderError>(())
     })?;
     let finished = finished.into_inner().expect("no thread panics while it holds the picture");
-    Ok(finished.share_out(start.elapsed()))
+    Ok(finished.share_out(watch.elapsed()))
 }
 
 /// A rectangle of pixels.
@@ -118,7 +119,7 @@ impl Tile {
         if stop.is_requested() {
             return Ok(None);
         }
-        let start = Instant::now();
+        let mut watch = Stopwatch::start();
         let pixels = || {
             (area.row..area.row + area.height)
                 .flat_map(move |row| (area.column..area.column + area.width).map(move |column| (column, row)))
@@ -130,7 +131,7 @@ impl Tile {
         if stop.is_requested() {
             return Ok(None);
         }
-        let traced = Instant::now();
+        let trace = watch.lap();
 
         let mut found_normals = Vec::new();
         if scene.plan.runs(Pass::Normals) {
@@ -144,7 +145,7 @@ impl Tile {
                 srgb_from_color(scene.shading.color(&outcomes[place], found_normals[place], view, row, size))
             }));
         }
-        let (trace, shade) = (traced - start, traced.elapsed());
+        let shade = watch.lap();
         let counters = workspace.counters;
         let layers = scene.plan.layers();
         Ok(Some(Self { area, layers, rays, outcomes, normals: found_normals, color, counters, trace, shade }))

@@ -71,7 +71,7 @@ impl Bench {
         let engines: [Arc<dyn Engine>; 2] = [Arc::new(Interpreter), Arc::new(Jit::new()?)];
         let mut rounds = [Vec::new(), Vec::new()];
         // The first round does not count: it fills caches and wakes the processor.
-        in_turns(engines.len(), runs + 1, Deadline::NEVER, |turn| {
+        in_turns(engines.len(), runs + 1, Deadline::never(), |turn| {
             let measured = self.round(&engines[turn.candidate])?;
             if turn.round > 0 {
                 rounds[turn.candidate].push(measured);

@@ -1,15 +1,12 @@
 //! The page that shows every case as every method draws it.
 
-use std::io::{self, Cursor, Write};
-use std::path::Path;
+use std::io::{self, Write};
 
-use base64::Engine;
-use base64::prelude::BASE64_STANDARD;
-use iso_grid::Counters;
-use iso_render::{EncodeError, ImageFormat, Picture, Shading, StatusCounts, srgb_from_color};
+use iso_render::{EncodeError, Shading, srgb_from_color};
 
 use super::measure::{Measured, Seen};
 use crate::comparison::{Answers, Verdict};
+use crate::html::{escaped, image_address};
 
 /// What is painted over wrong answers.
 const FALSE_HIT: [u8; 3] = [220, 30, 30];
@@ -53,9 +50,9 @@ fn write_case(writer: &mut dyn Write, case: &Measured) -> io::Result<()> {
         let picture = thumbnail(&case.view, answers, verdicts).map_err(io::Error::other)?;
         writeln!(
             writer,
-            "<figure><img alt=\"\" src=\"data:image/png;base64,{}\"><figcaption>{method}: {} wrong, {} missed, {} open<br>\
+            "<figure><img alt=\"\" src=\"{}\"><figcaption>{method}: {} wrong, {} missed, {} open<br>\
              {:.1} ms</figcaption></figure>",
-            BASE64_STANDARD.encode(picture),
+            picture,
             run.wrong,
             run.missed,
             run.ends.touch + run.ends.undecided,
@@ -65,8 +62,8 @@ fn write_case(writer: &mut dyn Write, case: &Measured) -> io::Result<()> {
     Ok(())
 }
 
-/// The picture as PNG, wrong answers painted over.
-fn thumbnail(view: &Seen, answers: &Answers, verdicts: &[Verdict]) -> Result<Vec<u8>, EncodeError> {
+/// The address of the picture, wrong answers painted over.
+fn thumbnail(view: &Seen, answers: &Answers, verdicts: &[Verdict]) -> Result<String, EncodeError> {
     let shading = Shading::new(&view.camera, true);
     let color = |pixel: usize| match verdicts[pixel] {
         Verdict::False => FALSE_HIT,
@@ -77,24 +74,5 @@ fn thumbnail(view: &Seen, answers: &Answers, verdicts: &[Verdict]) -> Result<Vec
             srgb_from_color(shading.color(&answers.outcomes[pixel], normal, toward, row as u32, view.size))
         }
     };
-    let picture = Picture {
-        size: view.size,
-        color: (0..view.rays.len()).map(color).collect(),
-        depth: Vec::new(),
-        normals: Vec::new(),
-        points: Vec::new(),
-        statuses: Vec::new(),
-        outcomes: Vec::new(),
-        counts: StatusCounts::default(),
-        counters: Counters::default(),
-        trace_seconds: 0.0,
-        shade_seconds: 0.0,
-    };
-    let mut file = Cursor::new(Vec::new());
-    picture.write_color(ImageFormat::of(Path::new("thumbnail.png"))?, &mut file)?;
-    Ok(file.into_inner())
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    image_address(view.size, (0..view.rays.len()).map(color).collect())
 }

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use crate::html::escaped;
+
 const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 440.0;
 const LEFT: f64 = 84.0;
@@ -203,31 +205,9 @@ impl Axis {
     }
 }
 
-/// Text as it may stand in HTML and SVG. Characters that these cannot hold are replaced.
-pub(super) fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\n' | '\t' => escaped.push(character),
-            character if character.is_control() => escaped.push('\u{fffd}'),
-            character => escaped.push(character),
-        }
-    }
-    escaped
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn text_cannot_break_out() {
-        assert_eq!(escaped("a<b & \"c\" > d\u{1}"), "a&lt;b &amp; &quot;c&quot; &gt; d\u{fffd}");
-    }
 
     #[test]
     fn axes_show_round_values() {

@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use super::chart::escaped;
 use super::{Report, Run, cells_plot, error_plot};
+use crate::html::escaped;
 
 const STYLE: &str = "\
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; background: #fff; max-width: 76rem; margin: 2rem auto; padding: 0 1rem }
