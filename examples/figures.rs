@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use iso_expr::{Ast, Engine, Interpreter, Program};
-use iso_grid::{GridSettings, Method, Region, Surface};
+use iso_grid::{GridSettings, Method, Region, RootFinding, Surface};
 use iso_jit::Jit;
 use iso_render::{
     Camera, ImageFormat, Layers, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, View, Wanted,
@@ -103,7 +103,7 @@ impl Paper {
         let plan = Plan::new(&Wanted {
             program: &self.value,
             method: match cells {
-                0 => Method::Direct { step: GridSettings::STEP },
+                0 => Method::Direct { step: GridSettings::STEP, roots: RootFinding::PAPER },
                 _ => Method::Grid(GridSettings::new([cells; 3])),
             },
             has_parameters: false,

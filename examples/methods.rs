@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 use iso_expr::Engine;
 use iso_grid::{
-    Certified, Direct, Grid, GridSettings, Hit, Octree, Outcome, Ray, Surface, Tracer, Workspace,
+    Certified, Direct, Grid, GridSettings, Hit, Octree, Outcome, Ray, RootFinding, Surface, Tracer, Workspace,
 };
 use iso_jit::Jit;
 use scenes::{Scene, Status, Verdict};
@@ -33,7 +33,10 @@ const METHODS: [Method; 4] = [
         name: "direct",
         prepare: |scene, surface| {
             let step = GridSettings::STEP * f64::from(Direct::CELLS) / f64::from(CELLS);
-            Box::new(Direct::new(surface, scene.region(), step).expect("the settings are in range"))
+            Box::new(
+                Direct::new(surface, scene.region(), step, RootFinding::PAPER)
+                    .expect("the settings are in range"),
+            )
         },
     },
     Method {

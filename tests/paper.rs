@@ -12,7 +12,8 @@ use std::time::Instant;
 
 use iso_expr::{Engine, Interpreter};
 use iso_grid::{
-    Counters, Direct, Grid, GridSettings, Octree, Outcome, Ray, Region, Surface, Tracer, Workspace,
+    Counters, Direct, Grid, GridSettings, Octree, Outcome, Ray, Region, RootFinding, Surface, Tracer,
+    Workspace,
 };
 use iso_jit::Jit;
 use scenes::rounding::Rounding;
@@ -117,7 +118,10 @@ fn octree(surface: &Surface, region: Region) -> Box<dyn Tracer> {
 }
 
 fn direct(surface: &Surface, region: Region) -> Box<dyn Tracer> {
-    Box::new(Direct::new(surface, region, GridSettings::STEP).expect("the step is the paper's"))
+    Box::new(
+        Direct::new(surface, region, GridSettings::STEP, RootFinding::PAPER)
+            .expect("the step is the paper's"),
+    )
 }
 
 /// One scene's rays, compared.

@@ -192,3 +192,22 @@ fn a_formula_too_large_for_native_code_is_drawn_all_the_same() {
     assert!(json["gradient_operations"].as_u64().unwrap() > 10_000, "native code would do");
     assert!(json["pixels"]["hit"].as_u64().unwrap() > 0, "{json}");
 }
+
+#[test]
+fn root_finders_draw_the_same_pixels_with_less_work() {
+    let work = |finder: &str, tolerance: &str| {
+        let flags = ["--method", "grid", "--root-finder", finder, "--tolerance", tolerance, "--json"];
+        let json = render(&Case::new(), TORUS, &flags).exits(0).json();
+        let count = |key: &str| json["counters"][key].as_u64().unwrap();
+        (json["pixels"].clone(), count("trace_evaluations"), count("gradient_evaluations"))
+    };
+    let (bisected, most, normals) = work("bisection", "0");
+    let (interpolated, fewer, same) = work("itp", "0");
+    assert_eq!((&interpolated, same), (&bisected, normals));
+    let (followed, fewest, gradients) = work("newton", "0");
+    assert_eq!(followed, bisected);
+    assert!(fewest < fewer && fewer < most && gradients > normals);
+    let (coarse, least, _) = work("bisection", "1e-4");
+    assert_eq!(coarse, bisected);
+    assert!(least < most);
+}

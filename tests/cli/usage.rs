@@ -34,7 +34,7 @@ fn completions_exist_for_every_shell() {
 #[test]
 fn bad_usage_exits_with_2() {
     let case = Case::new();
-    let wrong: [&[&str]; 22] = [
+    let wrong: [&[&str]; 24] = [
         &[],
         &["draw"],
         &["render"],
@@ -51,6 +51,8 @@ fn bad_usage_exits_with_2() {
         &["render", "x", "--method", "grid", "--grid", "0"],
         &["render", "x", "--method", "grid", "--grid", "4000000000"],
         &["render", "x", "--method", "grid", "--step", "0"],
+        &["render", "x", "--method", "grid", "--tolerance", "-1"],
+        &["render", "x", "--method", "grid", "--root-finder", "guess"],
         &["render", "x", "--threads", "-1"],
         &["render", "x", "--fov", "180"],
         &["render", "x", "--view-width", "3"],
@@ -71,7 +73,12 @@ fn settings_of_another_method_are_refused() {
     Case::new().run(&["render", "x", "--grid", "30"]).exits(2).reports(
         "error: --grid has no meaning for the method certified\n  help: leave it out, or choose --method grid or octree\n",
     );
-    for flags in [["--method", "direct", "--grid", "30"], ["--method", "grid", "--accuracy", "1e-6"]] {
+    for flags in [
+        ["--method", "direct", "--grid", "30"],
+        ["--method", "grid", "--accuracy", "1e-6"],
+        ["--method", "certified", "--root-finder", "itp"],
+        ["--method", "certified", "--tolerance", "1e-6"],
+    ] {
         let mut arguments = vec!["render", "x"];
         arguments.extend(flags);
         Case::new().run(&arguments).exits(2).mentions("has no meaning for the method");

@@ -1,7 +1,7 @@
 //! The method of intersection and the region, from flags.
 
 use iso_expr::CompileError;
-use iso_grid::{Certified, GridSettings, Method, Region, Surface, Workspace};
+use iso_grid::{Certified, GridSettings, Method, Region, RootFinder, RootFinding, Surface, Workspace};
 
 use crate::failure::Failure;
 use crate::flags::{MethodFlags, MethodName};
@@ -20,17 +20,23 @@ pub(crate) fn method(flags: &MethodFlags) -> Result<Method, Failure> {
         refuse("--grid", flags.grid.is_some(), "--method grid or octree")?;
         refuse("--refine", flags.refine.is_some(), "--method grid or octree")
     };
+    let refuse_sampling = || {
+        let methods = "--method grid, octree or direct";
+        refuse("--step", flags.step.is_some(), methods)?;
+        refuse("--root-finder", flags.root_finder.is_some(), methods)?;
+        refuse("--tolerance", flags.tolerance.is_some(), methods)
+    };
     let refuse_accuracy = || refuse("--accuracy", flags.accuracy.is_some(), "--method certified");
     match flags.method {
         MethodName::Certified => {
             refuse_grid()?;
-            refuse("--step", flags.step.is_some(), "--method grid, octree or direct")?;
+            refuse_sampling()?;
             Ok(Method::Certified { accuracy: flags.accuracy.unwrap_or(Certified::ACCURACY) })
         }
         MethodName::Direct => {
             refuse_grid()?;
             refuse_accuracy()?;
-            Ok(Method::Direct { step: flags.step.unwrap_or(GridSettings::STEP) })
+            Ok(Method::Direct { step: flags.step.unwrap_or(GridSettings::STEP), roots: roots(flags) })
         }
         MethodName::Grid => {
             refuse_accuracy()?;
@@ -54,6 +60,15 @@ fn grid_settings(flags: &MethodFlags) -> GridSettings {
     GridSettings {
         refinement: flags.refine.unwrap_or(settings.refinement),
         step: flags.step.unwrap_or(settings.step),
+        roots: roots(flags),
         ..settings
+    }
+}
+
+/// The paper's root finding, but for what `flags` say.
+fn roots(flags: &MethodFlags) -> RootFinding {
+    RootFinding {
+        finder: flags.root_finder.map_or(RootFinding::PAPER.finder, RootFinder::from),
+        tolerance: flags.tolerance.unwrap_or(RootFinding::PAPER.tolerance),
     }
 }

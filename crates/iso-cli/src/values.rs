@@ -73,6 +73,13 @@ pub(crate) fn step(text: &str) -> Result<f64, String> {
     if allowed.contains(&step) { Ok(step) } else { Err(error()) }
 }
 
+/// The width, relative to t, to which roots are narrowed.
+pub(crate) fn tolerance(text: &str) -> Result<f64, String> {
+    let tolerance = finite(text)?;
+    let error = || format!("expected a width from 0 to 1, found {tolerance}");
+    if (0.0..=1.0).contains(&tolerance) { Ok(tolerance) } else { Err(error()) }
+}
+
 /// How many pixels, across and down, are averaged.
 pub(crate) fn smoothing(text: &str) -> Result<Smoothing, String> {
     Smoothing::new(count(text)?)

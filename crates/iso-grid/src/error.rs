@@ -47,6 +47,14 @@ pub enum GridError {
         /// The least that is allowed.
         least: f64,
     },
+    /// The width to which roots are narrowed is out of range.
+    #[error(
+        "roots are narrowed to {given} of their distance; it takes 0 to 1, and 0 goes as far as floats do"
+    )]
+    Tolerance {
+        /// The width asked for.
+        given: f64,
+    },
     /// Work on the surface was asked to end: see [`Stop`](crate::Stop).
     #[error("stopped before the method was prepared")]
     Stopped,

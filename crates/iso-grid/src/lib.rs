@@ -25,7 +25,7 @@ pub use counters::Counters;
 pub use error::GridError;
 pub use method::Method;
 pub use normals::normals;
-pub use paper::{Direct, Grid, GridSettings, Octree};
+pub use paper::{Direct, Grid, GridSettings, Octree, RootFinder, RootFinding};
 pub use ray::{Ray, Span};
 pub use region::{Region, RegionError};
 pub use stop::Stop;

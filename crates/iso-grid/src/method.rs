@@ -1,6 +1,6 @@
 //! The methods of intersection, by name and settings.
 
-use crate::{Certified, Direct, Grid, GridError, GridSettings, Octree, Region, Surface, Tracer};
+use crate::{Certified, Direct, Grid, GridError, GridSettings, Octree, Region, RootFinding, Surface, Tracer};
 
 /// A method of intersection with its settings, not yet prepared for a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +18,8 @@ pub enum Method {
     Direct {
         /// The step between samples: see [`Direct::new`].
         step: f64,
+        /// How roots are found between samples.
+        roots: RootFinding,
     },
 }
 
@@ -35,6 +37,15 @@ impl Method {
         }
     }
 
+    /// How the method finds roots between samples; `None` for a method that does not sample.
+    pub fn roots(&self) -> Option<RootFinding> {
+        match self {
+            Self::Certified { .. } => None,
+            Self::Grid(settings) | Self::Octree(settings) => Some(settings.roots),
+            Self::Direct { roots, .. } => Some(*roots),
+        }
+    }
+
     /// Prepares the method for a surface in a region.
     ///
     /// # Errors
@@ -46,7 +57,7 @@ impl Method {
             }
             Self::Grid(settings) => Box::new(Grid::new(surface, region, settings)?),
             Self::Octree(settings) => Box::new(Octree::new(surface, region, settings)?),
-            Self::Direct { step } => Box::new(Direct::new(surface, region, *step)?),
+            Self::Direct { step, roots } => Box::new(Direct::new(surface, region, *step, *roots)?),
         })
     }
 }

@@ -59,6 +59,8 @@ pub struct Workspace {
     pub counters: Counters,
     /// Points for the kernels, and their values.
     pub(crate) points: PointBatch,
+    /// Points whose gradients are asked for beside their values.
+    pub(crate) sloped_points: PointBatch,
     /// Boxes for the kernels, and their enclosures.
     pub(crate) boxes: BoxBatch,
     /// Points of those boxes, as boxes of their own.

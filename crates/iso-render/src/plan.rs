@@ -1,7 +1,7 @@
 //! The plan of a picture: what it takes and what is left out, decided before any work.
 
 use iso_expr::{Axis, CompileError, Program};
-use iso_grid::{GridError, Kernel, Method, Region, Surface, Tracer};
+use iso_grid::{GridError, Kernel, Method, Region, RootFinder, Surface, Tracer};
 
 use crate::{Layers, Projection, Smoothing};
 
@@ -262,7 +262,12 @@ impl Wanted<'_> {
         let certified = matches!(self.method, Method::Certified { .. });
         match kernel {
             Kernel::Values if certified => (true, "roots are narrowed down at points before they are proven"),
-            Kernel::Values => (true, "rays are sampled and roots bisected"),
+            Kernel::Values => (true, "rays are sampled, and roots found between samples"),
+            Kernel::Gradients
+                if self.method.roots().is_some_and(|roots| roots.finder == RootFinder::Newton) =>
+            {
+                (true, "roots are found by the slope of F along the ray")
+            }
             Kernel::Gradients => self.normals(),
             Kernel::ValueEnclosures if certified => (true, "stretches of rays and cells are proven empty"),
             Kernel::ValueEnclosures if !self.box_is_given => (true, "a box is fitted around the surface"),

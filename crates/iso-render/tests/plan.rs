@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use iso_expr::{Ast, Axis, Interpreter, Program};
-use iso_grid::{Certified, GridSettings, Kernel, Method, Region, Surface};
+use iso_grid::{Certified, GridSettings, Kernel, Method, Region, RootFinding, Surface};
 use iso_render::{
     Buffer, Camera, Given, Layers, Pass, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, View,
     Wanted, render,
@@ -21,7 +21,7 @@ fn methods() -> [Method; 4] {
         Method::Certified { accuracy: Certified::ACCURACY },
         Method::Grid(GridSettings::new([12, 10, 9])),
         Method::Octree(GridSettings::new([12; 3])),
-        Method::Direct { step: GridSettings::STEP },
+        Method::Direct { step: GridSettings::STEP, roots: RootFinding::PAPER },
     ]
 }
 
@@ -152,7 +152,7 @@ fn an_argument_that_is_not_taken_is_not_cut_along() {
 #[test]
 fn boxes_are_fitted_and_pixels_averaged_only_when_asked_for() {
     let program = program(PAPER);
-    let method = Method::Direct { step: GridSettings::STEP };
+    let method = Method::Direct { step: GridSettings::STEP, roots: RootFinding::PAPER };
     let plain = wanted(&program, method, Layers::COLOR);
     let runs = |wanted: Wanted<'_>, pass| Plan::new(&wanted).runs(pass);
     assert!(!runs(plain, Pass::Fit) && runs(Wanted { box_is_given: false, ..plain }, Pass::Fit));

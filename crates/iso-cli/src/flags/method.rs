@@ -1,7 +1,7 @@
 //! Flags that say where and how the surface is looked for.
 
 use clap::{Args, ValueEnum};
-use iso_grid::Region;
+use iso_grid::{Region, RootFinder};
 
 use crate::values;
 
@@ -38,6 +38,14 @@ pub(crate) struct MethodFlags {
     /// The step between samples, in parts of the longest side of a cell [default: 0.05]
     #[arg(long, value_name = "STEP", value_parser = values::positive)]
     pub(crate) step: Option<f64>,
+
+    /// How the sampling methods find a root between samples of unlike sign [default: bisection]
+    #[arg(long, value_name = "FINDER", value_enum)]
+    pub(crate) root_finder: Option<RootFinderName>,
+
+    /// The width, relative to t, to which the sampling methods narrow roots; 0 goes on to neighbouring floats [default: 0]
+    #[arg(long, value_name = "WIDTH", value_parser = values::tolerance)]
+    pub(crate) tolerance: Option<f64>,
 
     /// The width, relative to t, to which the certified method encloses roots; coarser is faster [default: 1e-12]
     #[arg(long, value_name = "WIDTH", value_parser = values::positive)]
@@ -83,6 +91,27 @@ impl MethodName {
             Self::Grid => "grid",
             Self::Octree => "octree",
             Self::Direct => "direct",
+        }
+    }
+}
+
+/// The root finders of the sampling methods.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RootFinderName {
+    /// Halve the interval, as the paper does
+    Bisection,
+    /// Interpolate, truncate and project: fewer points, and hardly ever more than bisection
+    Itp,
+    /// Follow the derivative along the ray, inside the interval; each point costs a gradient
+    Newton,
+}
+
+impl From<RootFinderName> for RootFinder {
+    fn from(name: RootFinderName) -> Self {
+        match name {
+            RootFinderName::Bisection => Self::Bisection,
+            RootFinderName::Itp => Self::Itp,
+            RootFinderName::Newton => Self::Newton,
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use iso_expr::{Engine, Interpreter};
-use iso_grid::{Certified, GridSettings, Method, Outcome, Ray, Surface, Tracer, Workspace};
+use iso_grid::{Certified, GridSettings, Method, Outcome, Ray, RootFinding, Surface, Tracer, Workspace};
 use iso_render::{Camera, Projection, Size, Status, StatusCounts, View};
 use serde::Serialize;
 
@@ -22,7 +22,7 @@ const METHODS: [fn() -> Method; 4] = [
     || Method::Certified { accuracy: Certified::ACCURACY },
     || Method::Grid(GridSettings::default()),
     || Method::Octree(GridSettings::default()),
-    || Method::Direct { step: GridSettings::STEP },
+    || Method::Direct { step: GridSettings::STEP, roots: RootFinding::PAPER },
 ];
 
 /// What became of a case.

@@ -35,7 +35,7 @@ impl Setting {
             Method::Certified { .. } | Method::Direct { .. } => None,
         };
         let step = match method {
-            Method::Direct { step } => Some(step),
+            Method::Direct { step, .. } => Some(step),
             _ => cells.map(|settings| settings.step),
         };
         let engine_name = engine.name();
@@ -63,7 +63,7 @@ impl Setting {
 pub(crate) fn settings(grids: &[u32], steps: &[f64]) -> Vec<Setting> {
     let mut methods = vec![Method::CERTIFIED];
     for &step in steps {
-        methods.push(Method::Direct { step });
+        methods.push(Method::Direct { step, roots: iso_grid::RootFinding::PAPER });
         for &grid in grids {
             let settings = GridSettings { step, ..GridSettings::new([grid; 3]) };
             methods.extend([Method::Grid(settings), Method::Octree(settings)]);

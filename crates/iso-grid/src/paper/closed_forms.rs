@@ -4,21 +4,26 @@ use glam::DVec3;
 
 use crate::testing::{surface, surface_without_gradient, trace};
 use crate::{
-    Direct, Grid, GridSettings, Hit, Octree, Outcome, Ray, Region, Surface, Tracer, Workspace, normals,
+    Direct, Grid, GridSettings, Hit, Octree, Outcome, Ray, Region, RootFinder, RootFinding, Surface, Tracer,
+    Workspace, normals,
 };
 
 fn cube(half_side: f64) -> Region {
     Region::new(DVec3::splat(-half_side), DVec3::splat(half_side)).unwrap()
 }
 
-/// Every method of the paper on one surface.
+/// Every method of the paper on one surface, with every root finder.
 fn methods(surface: &Surface, region: Region, cells: u32) -> Vec<Box<dyn Tracer>> {
-    let settings = GridSettings::new([cells; 3]);
-    vec![
-        Box::new(Direct::new(surface, region, settings.step).unwrap()),
-        Box::new(Grid::new(surface, region, &settings).unwrap()),
-        Box::new(Octree::new(surface, region, &settings).unwrap()),
-    ]
+    let with_finder = |finder| -> [Box<dyn Tracer>; 3] {
+        let roots = RootFinding { finder, tolerance: 0.0 };
+        let settings = GridSettings { roots, ..GridSettings::new([cells; 3]) };
+        [
+            Box::new(Direct::new(surface, region, settings.step, roots).unwrap()),
+            Box::new(Grid::new(surface, region, &settings).unwrap()),
+            Box::new(Octree::new(surface, region, &settings).unwrap()),
+        ]
+    };
+    RootFinder::ALL.into_iter().flat_map(with_finder).collect()
 }
 
 /// Rays towards points around the origin from points around it, none of them along an axis.
@@ -51,6 +56,7 @@ fn check(surface: &Surface, region: Region, expected: impl Fn(&Ray) -> Option<(f
         let mut outcomes = vec![Outcome::Miss; rays.len()];
         let mut found = vec![DVec3::ZERO; rays.len()];
         tracer.trace(&mut workspace, &rays, &mut outcomes);
+        workspace.counters.gradient_evaluations = 0;
         normals(surface, &mut workspace, &rays, &outcomes, &mut found).unwrap();
         let mut hits = 0;
         for (number, ray) in rays.iter().enumerate() {
@@ -159,6 +165,41 @@ fn outcomes_do_not_depend_on_neighbours_in_the_slice() {
         tracer.trace(&mut Workspace::default(), &rays, &mut together);
         for (ray, outcome) in rays.iter().zip(together) {
             assert_eq!(trace(&*tracer, *ray), outcome);
+        }
+    }
+}
+
+/// What each root finder makes of the same rays: ends of the same kind, roots as far apart as the tolerance allows.
+#[test]
+fn root_finders_agree_and_newton_takes_fewer_evaluations() {
+    let surface = surface(
+        |p| p.length_squared() * p.length_squared() + p.x - 0.7,
+        |p| 4.0 * p.length_squared() * p + DVec3::X,
+    );
+    let rays = rays();
+    let traced = |finder, tolerance| {
+        let settings =
+            GridSettings { roots: RootFinding { finder, tolerance }, ..GridSettings::new([20; 3]) };
+        let mut outcomes = vec![Outcome::Miss; rays.len()];
+        let mut workspace = Workspace::default();
+        Grid::new(&surface, cube(1.3), &settings).unwrap().trace(&mut workspace, &rays, &mut outcomes);
+        let counters = workspace.counters;
+        (outcomes, counters.trace_evaluations + counters.gradient_evaluations)
+    };
+    for tolerance in [0.0, 1e-9, 1e-4] {
+        let (bisected, most) = traced(RootFinder::Bisection, tolerance);
+        for finder in [RootFinder::Itp, RootFinder::Newton] {
+            let (outcomes, evaluations) = traced(finder, tolerance);
+            assert!(evaluations < most, "{finder:?}: {evaluations} of {most}");
+            for (one, other) in bisected.iter().zip(outcomes) {
+                match (*one, other) {
+                    (Outcome::Hit(one), Outcome::Hit(other)) => {
+                        let allowed = (2.0 * tolerance).max(1e-14) * one.t;
+                        assert!((one.t - other.t).abs() <= allowed, "{finder:?}: {one:?} {other:?}");
+                    }
+                    (one, other) => assert_eq!(one, other),
+                }
+            }
         }
     }
 }

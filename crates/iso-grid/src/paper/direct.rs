@@ -1,15 +1,12 @@
 //! The paper's method without a grid.
 
-use std::sync::Arc;
-
-use iso_expr::BatchKernel;
-
-use crate::paper::lockstep;
+use crate::paper::lockstep::Lockstep;
+use crate::paper::roots::RootFinding;
 use crate::paper::settings::check_step;
 use crate::paper::stretch::{Spacing, Stretch, Stretches};
-use crate::{Counters, GridError, Outcome, Ray, Region, Stop, Surface, Tracer, Workspace};
+use crate::{Counters, GridError, Outcome, Ray, Region, Surface, Tracer, Workspace};
 
-/// Samples each ray through the whole region and bisects at the first change of sign: the paper's N = 0.
+/// Samples each ray through the whole region and narrows down the first change of sign: the paper's N = 0.
 ///
 /// Without cells there is nothing to measure the distance between samples by, so it is that of a grid with
 /// [`Direct::CELLS`] cells along the region's longest side: at the default step of 1/20, no more than 1/600 of that side.
@@ -18,10 +15,8 @@ use crate::{Counters, GridError, Outcome, Ray, Region, Stop, Surface, Tracer, Wo
 /// change sign for roots. A sample that is exactly zero is a root: a [`Outcome::Hit`] when the signs before and behind it
 /// differ, otherwise a [`Outcome::Touch`].
 pub struct Direct {
-    values: Arc<dyn BatchKernel>,
-    region: Region,
+    lockstep: Lockstep,
     spacing: Spacing,
-    stop: Stop,
 }
 
 impl Direct {
@@ -29,21 +24,22 @@ impl Direct {
     pub const CELLS: u32 = 30;
 
     /// Prepares the method. `step` is the largest distance between samples as a part of 1/[`Direct::CELLS`] of the
-    /// region's longest side, from [`GridSettings::LEAST_STEP`](crate::GridSettings::LEAST_STEP) to 1.
+    /// region's longest side, from [`GridSettings::LEAST_STEP`](crate::GridSettings::LEAST_STEP) to 1; `roots` says how roots
+    /// are found between samples.
     ///
     /// # Errors
-    /// When `step` is out of range or the engine cannot compile F − C.
-    pub fn new(surface: &Surface, region: Region, step: f64) -> Result<Self, GridError> {
+    /// When a setting is out of range or the engine cannot compile F − C or its gradient.
+    pub fn new(surface: &Surface, region: Region, step: f64, roots: RootFinding) -> Result<Self, GridError> {
         check_step(step)?;
         let cells = f64::from(Self::CELLS);
         let spacing = Spacing::new(step, region.extent().max_element() / cells, cells);
-        Ok(Self { values: Arc::clone(surface.values()?), region, spacing, stop: surface.stop().clone() })
+        Ok(Self { lockstep: Lockstep::new(surface, region, roots)?, spacing })
     }
 }
 
 impl Tracer for Direct {
     fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]) {
-        lockstep::trace(&*self.values, &self.stop, &self.region, workspace, rays, outcomes, |ray, span| {
+        self.lockstep.trace(workspace, rays, outcomes, |ray, span| {
             Whole(Some(self.spacing.stretch(ray.direction, span)))
         });
     }

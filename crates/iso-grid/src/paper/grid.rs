@@ -1,15 +1,13 @@
 //! The paper's method.
 
-use std::sync::Arc;
-
-use iso_expr::{Axis, BatchKernel};
+use iso_expr::Axis;
 
 use crate::paper::existence::Cells;
 use crate::paper::lattice::Lattice;
-use crate::paper::lockstep;
+use crate::paper::lockstep::Lockstep;
 use crate::paper::stretch::{Spacing, Stretch, Stretches};
 use crate::paper::walk::CellWalk;
-use crate::{Counters, GridError, GridSettings, Outcome, Ray, Region, Stop, Surface, Tracer, Workspace};
+use crate::{Counters, GridError, GridSettings, Outcome, Ray, Region, Surface, Tracer, Workspace};
 
 /// The paper's method: a grid that knows which of its cells hold the surface.
 ///
@@ -18,8 +16,8 @@ use crate::{Counters, GridError, GridSettings, Outcome, Ray, Region, Stop, Surfa
 /// parts are evaluated, and at the first that differs it becomes an existence cell, whose neighbours are examined in turn.
 /// No cell is examined twice. Along an axis that F does not depend on, all cells are alike and classified as one.
 ///
-/// A ray walks from cell to cell. In existence cells it is sampled; where F − C changes sign between samples, bisection
-/// gives the point, down to neighbouring doubles. Samples are joined across faces between existence cells.
+/// A ray walks from cell to cell. In existence cells it is sampled; where F − C changes sign between samples, a root
+/// finder gives the point: in the paper bisection, down to neighbouring doubles. Samples are joined across faces between existence cells.
 ///
 /// Zero has both signs, so a surface through grid points is found, and so is a sample that happens to be zero: a
 /// [`Outcome::Hit`] when the signs before and behind it differ, otherwise a [`Outcome::Touch`]. NaN and infinite values
@@ -28,12 +26,10 @@ use crate::{Counters, GridError, GridSettings, Outcome, Ray, Region, Stop, Surfa
 /// It misses what is smaller than a cell and far from what it found, pairs of roots between neighbouring samples, roots
 /// where F − C does not change sign, and takes poles that change sign for roots.
 pub struct Grid {
-    values: Arc<dyn BatchKernel>,
-    region: Region,
+    lockstep: Lockstep,
     lattice: Lattice,
     cells: Cells,
     spacing: Spacing,
-    stop: Stop,
     preprocessing: Counters,
 }
 
@@ -44,7 +40,7 @@ impl Grid {
     /// Prepares the method: evaluates F − C at the grid's points, over all threads, and finds the existence cells.
     ///
     /// # Errors
-    /// When a setting is out of range, the grid has more than [`Grid::MOST_CELLS`] cells, the engine cannot compile F − C,
+    /// When a setting is out of range, the grid has more than [`Grid::MOST_CELLS`] cells, the engine cannot compile F − C or its gradient,
     /// or the surface's [`Stop`] is requested.
     pub fn new(surface: &Surface, region: Region, settings: &GridSettings) -> Result<Self, GridError> {
         settings.check()?;
@@ -52,7 +48,7 @@ impl Grid {
             let (given, allowed) = (settings.count(), Self::MOST_CELLS);
             return Err(GridError::TooManyCells { method: "grid", given, allowed });
         }
-        let values = Arc::clone(surface.values()?);
+        let values = surface.values()?;
         let lattice = Lattice::new(&region, settings.cells);
         let mut preprocessing = Counters::default();
         let along = |count: [u32; 3]| {
@@ -60,22 +56,20 @@ impl Grid {
         };
         let classified = Lattice::new(&region, along(settings.cells));
         let refinement = along(settings.refinement);
-        let cells = Cells::find(&*values, surface.stop(), &classified, refinement, &mut preprocessing)?;
+        let cells = Cells::find(&**values, surface.stop(), &classified, refinement, &mut preprocessing)?;
         let spacing = Spacing::new(settings.step, lattice.largest_side(), 1.0);
-        let stop = surface.stop().clone();
-        Ok(Self { values, region, lattice, cells, spacing, stop, preprocessing })
+        let lockstep = Lockstep::new(surface, region, settings.roots)?;
+        Ok(Self { lockstep, lattice, cells, spacing, preprocessing })
     }
 }
 
 impl Tracer for Grid {
     fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]) {
-        lockstep::trace(&*self.values, &self.stop, &self.region, workspace, rays, outcomes, |ray, span| {
-            ExistenceStretches {
-                grid: self,
-                walk: CellWalk::new(&self.lattice, *ray, span),
-                ray: *ray,
-                steps: 0,
-            }
+        self.lockstep.trace(workspace, rays, outcomes, |ray, span| ExistenceStretches {
+            grid: self,
+            walk: CellWalk::new(&self.lattice, *ray, span),
+            ray: *ray,
+            steps: 0,
         });
     }
 
@@ -114,6 +108,8 @@ impl Stretches for ExistenceStretches<'_> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use iso_expr::{Ast, Interpreter};
 
     use super::*;

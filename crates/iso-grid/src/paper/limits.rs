@@ -5,12 +5,13 @@ use glam::DVec3;
 
 use crate::testing::{Function, surface, surface_without_gradient, trace};
 use crate::{
-    Direct, Grid, GridError, GridSettings, Octree, Outcome, Ray, Region, Surface, Tracer, Workspace, normals,
+    Direct, Grid, GridError, GridSettings, Octree, Outcome, Ray, Region, RootFinding, Surface, Tracer,
+    Workspace, normals,
 };
 
 fn methods(surface: &Surface, region: Region, settings: &GridSettings) -> Vec<Box<dyn Tracer>> {
     vec![
-        Box::new(Direct::new(surface, region, settings.step).unwrap()),
+        Box::new(Direct::new(surface, region, settings.step, settings.roots).unwrap()),
         Box::new(Grid::new(surface, region, settings).unwrap()),
         Box::new(Octree::new(surface, region, settings).unwrap()),
     ]
@@ -47,10 +48,16 @@ fn settings_out_of_range_are_refused() {
         let error = refused(GridSettings { refinement: [2, 2, parts], ..good });
         assert!(matches!(error, GridError::Refinement { axis: 'z', given, allowed: 64 } if given == parts));
     }
+    for tolerance in [-1e-9, 1.5, f64::NAN, f64::INFINITY] {
+        let roots = RootFinding { tolerance, ..good.roots };
+        assert!(matches!(refused(GridSettings { roots, ..good }), GridError::Tolerance { .. }));
+        let direct = Direct::new(&surface, cube(1.0), good.step, roots);
+        assert!(matches!(direct, Err(GridError::Tolerance { .. })));
+    }
     for step in [0.0, -0.05, 1e-7, 1.5, f64::NAN, f64::INFINITY] {
         let error = refused(GridSettings { step, ..good });
         assert!(matches!(error, GridError::Step { .. }));
-        assert!(matches!(Direct::new(&surface, cube(1.0), step), Err(GridError::Step { .. })));
+        assert!(matches!(Direct::new(&surface, cube(1.0), step, good.roots), Err(GridError::Step { .. })));
     }
     let huge = GridSettings::new([60_000; 3]);
     let given = 60_000_u64.pow(3);

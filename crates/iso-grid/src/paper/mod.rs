@@ -1,8 +1,8 @@
 //! The methods of the paper, which know the signs of F − C at points and nothing else.
 //!
 //! Preprocessing finds the cells of a grid that hold the surface ([`existence`], [`octree`]); a ray walks through cells
-//! ([`walk`]); what it passes of existence cells is sampled, and bisected where the sign changes ([`search`]), many rays at
-//! a time ([`lockstep`]).
+//! ([`walk`]); what it passes of existence cells is sampled ([`search`]), and narrowed down where the sign changes ([`roots`]),
+//! many rays at a time ([`lockstep`]).
 
 mod direct;
 mod existence;
@@ -10,6 +10,7 @@ mod grid;
 mod lattice;
 mod lockstep;
 mod octree;
+mod roots;
 mod search;
 mod settings;
 mod sign;
@@ -24,4 +25,5 @@ mod limits;
 pub use direct::Direct;
 pub use grid::Grid;
 pub use octree::Octree;
+pub use roots::{RootFinder, RootFinding};
 pub use settings::GridSettings;

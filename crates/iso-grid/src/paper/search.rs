@@ -1,6 +1,7 @@
 //! The search for the first change of sign along one ray.
 
 use crate::batch::PointBatch;
+use crate::paper::roots::{Bracket, Narrowing, RootFinding, Sample};
 use crate::paper::sign::Signs;
 use crate::paper::stretch::{Stretch, Stretches};
 use crate::{Hit, Outcome, Ray, Span};
@@ -14,8 +15,7 @@ const FIRST_LOOK: f64 = 1.0 / 1_048_576.0;
 /// How many times further each look goes where there is no sign.
 const FURTHER: f64 = 16.0;
 
-/// Samples the stretches of a ray in order and halves the first interval whose ends have unlike signs, down to
-/// neighbouring doubles.
+/// Samples the stretches of a ray in order and narrows the first interval whose ends have unlike signs.
 ///
 /// The search owns no kernel: it asks for points and is answered with the values there, so that many searches share one
 /// call of a kernel. What it asks for depends on its own answers alone.
@@ -24,6 +24,7 @@ const FURTHER: f64 = 16.0;
 /// as one. Two roots between neighbouring samples look like none.
 pub(crate) struct Search<S> {
     ray: Ray,
+    roots: RootFinding,
     stretches: S,
     sampled: Option<Sampled>,
     block: Block,
@@ -54,57 +55,22 @@ struct Block {
     read: usize,
 }
 
-/// F − C at a point of the ray.
-#[derive(Clone, Copy)]
-struct Sample {
-    t: f64,
-    value: f64,
-}
-
-impl Sample {
-    fn signs(&self) -> Signs {
-        Signs::of(self.value)
-    }
-}
-
 /// What the search is doing.
 #[derive(Clone, Copy)]
 enum Stage {
     /// Looking for samples of unlike sign.
     Sampling,
-    /// Halving the interval between two samples of unlike sign.
-    Halving(Bracket),
-    /// Looking what sign there is behind the zero at the bracket's end, at this distance.
-    Passing(Bracket, f64),
-}
-
-/// An interval whose ends have unlike signs; the second end may be a zero.
-#[derive(Clone, Copy)]
-struct Bracket {
-    before: Sample,
-    after: Sample,
-    /// The distance between the samples that it began as.
-    step: f64,
-}
-
-impl Bracket {
-    /// The middle, unless the ends are neighbouring doubles.
-    fn middle(&self) -> Option<f64> {
-        let middle = self.before.t + 0.5 * (self.after.t - self.before.t);
-        (self.before.t < middle && middle < self.after.t).then_some(middle)
-    }
-
-    /// The root, where F − C is nearer to zero.
-    fn hit(&self) -> Hit {
-        let nearer = if self.before.value.abs() < self.after.value.abs() { self.before } else { self.after };
-        Hit { t: nearer.t, bracket: Span { start: self.before.t, end: self.after.t } }
-    }
+    /// Narrowing the interval between two samples of unlike sign.
+    Narrowing(Narrowing),
+    /// Looking what sign there is behind the zero at the interval's end, at this distance.
+    Passing(Narrowing, f64),
 }
 
 impl<S: Stretches> Search<S> {
-    pub(crate) fn new(ray: Ray, stretches: S) -> Self {
+    pub(crate) fn new(ray: Ray, roots: RootFinding, stretches: S) -> Self {
         Self {
             ray,
+            roots,
             stretches,
             sampled: None,
             block: Block::default(),
@@ -118,30 +84,42 @@ impl<S: Stretches> Search<S> {
         self.stretches.steps()
     }
 
+    /// The ray that is searched.
+    pub(crate) fn ray(&self) -> &Ray {
+        &self.ray
+    }
+
+    /// Whether the slope along the ray is to be known beside the value at the next point, which is then one at most.
+    pub(crate) fn wants_slope(&self) -> bool {
+        matches!(&self.stage, Stage::Narrowing(narrowing) if narrowing.wants_slope())
+    }
+
     /// Adds the points where F − C is to be known next, and says how many.
     pub(crate) fn ask(&mut self, points: &mut PointBatch) -> usize {
-        match self.stage {
+        match &self.stage {
             Stage::Sampling => self.ask_for_block(points),
-            Stage::Halving(bracket) => bracket.middle().map_or(0, |middle| self.ask_for(points, middle)),
-            Stage::Passing(bracket, distance) => self.ask_for(points, bracket.after.t + distance),
+            Stage::Narrowing(narrowing) => narrowing.next().map_or(0, |next| self.ask_for(points, next)),
+            Stage::Passing(narrowing, distance) => {
+                self.ask_for(points, narrowing.bracket().after.t + distance)
+            }
         }
     }
 
-    /// Takes the values at the points last asked for, and says how the search ended if it did.
-    pub(crate) fn answer(&mut self, values: &[f64]) -> Option<Outcome> {
+    /// Takes the values at the points last asked for, and the slope if it was wanted, and says how the search ended if it did.
+    pub(crate) fn answer(&mut self, values: &[f64], slope: f64) -> Option<Outcome> {
         match (self.stage, values) {
             (Stage::Sampling, []) => return Some(Outcome::Miss),
             (Stage::Sampling, _) => {
                 self.block.values[..values.len()].copy_from_slice(values);
                 self.block.read = 0;
             }
-            (Stage::Halving(bracket), &[value]) => return self.halve(bracket, value),
-            (Stage::Halving(bracket), _) if bracket.after.value == 0.0 => {
-                self.stage = Stage::Passing(bracket, bracket.step * FIRST_LOOK);
+            (Stage::Narrowing(narrowing), &[value]) => return self.narrow(narrowing, value, slope),
+            (Stage::Narrowing(narrowing), _) if narrowing.bracket().after.value == 0.0 => {
+                self.stage = Stage::Passing(narrowing, narrowing.step() * FIRST_LOOK);
                 return None;
             }
-            (Stage::Halving(bracket), _) => return Some(Outcome::Hit(bracket.hit())),
-            (Stage::Passing(bracket, distance), _) => return self.pass(bracket, distance, values),
+            (Stage::Narrowing(narrowing), _) => return Some(Outcome::Hit(narrowing.bracket().hit())),
+            (Stage::Passing(narrowing, distance), _) => return self.pass(narrowing, distance, values),
         }
         self.read_block()
     }
@@ -198,7 +176,8 @@ impl<S: Stretches> Search<S> {
             let known = before.map_or(Signs::NONE, |before| before.signs());
             match before {
                 Some(before) if known != Signs::NONE && (known | sample.signs()).differ() => {
-                    self.stage = Stage::Halving(Bracket { before, after: sample, step: sample.t - before.t });
+                    let bracket = Bracket { before, after: sample };
+                    self.stage = Stage::Narrowing(Narrowing::new(self.roots, bracket));
                     return None;
                 }
                 _ if sample.signs().differ() => return Some(touch(sample.t)),
@@ -208,34 +187,31 @@ impl<S: Stretches> Search<S> {
         None
     }
 
-    /// Keeps the half of a bracket whose ends have unlike signs. Where F − C is undefined in the middle, the bracket is
-    /// given up and the search goes on behind it.
-    fn halve(&mut self, mut bracket: Bracket, value: f64) -> Option<Outcome> {
-        let middle = Sample { t: bracket.middle()?, value };
-        if middle.signs() == Signs::NONE {
-            self.stage = Stage::Sampling;
-            return if bracket.after.value == 0.0 { Some(touch(bracket.after.t)) } else { self.read_block() };
+    /// Keeps the part of an interval whose ends have unlike signs. Where F − C is undefined at the point that was asked for,
+    /// the interval is given up and the search goes on behind it.
+    fn narrow(&mut self, mut narrowing: Narrowing, value: f64, slope: f64) -> Option<Outcome> {
+        let has_sign = narrowing.take(Sample { t: narrowing.next()?, value }, slope);
+        if has_sign {
+            self.stage = Stage::Narrowing(narrowing);
+            return None;
         }
-        if middle.signs() == bracket.before.signs() {
-            bracket.before = middle;
-        } else {
-            bracket.after = middle;
-        }
-        self.stage = Stage::Halving(bracket);
-        None
+        self.stage = Stage::Sampling;
+        let after = narrowing.bracket().after;
+        if after.value == 0.0 { Some(touch(after.t)) } else { self.read_block() }
     }
 
     /// Tells a zero that is crossed from one that is only touched, by the first sign behind it.
-    fn pass(&mut self, bracket: Bracket, distance: f64, values: &[f64]) -> Option<Outcome> {
+    fn pass(&mut self, narrowing: Narrowing, distance: f64, values: &[f64]) -> Option<Outcome> {
         let behind: Signs = values.iter().map(|&value| Signs::of(value)).collect();
+        let bracket = narrowing.bracket();
         if behind == Signs::NEGATIVE || behind == Signs::POSITIVE {
             let crossed = behind != bracket.before.signs();
             return Some(if crossed { Outcome::Hit(bracket.hit()) } else { Outcome::Touch(bracket.hit()) });
         }
-        if distance >= bracket.step {
+        if distance >= narrowing.step() {
             return Some(Outcome::Touch(bracket.hit()));
         }
-        self.stage = Stage::Passing(bracket, (FURTHER * distance).min(bracket.step));
+        self.stage = Stage::Passing(narrowing, (FURTHER * distance).min(narrowing.step()));
         None
     }
 }

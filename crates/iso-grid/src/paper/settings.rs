@@ -1,6 +1,7 @@
 //! What a user may set of the paper's methods.
 
 use crate::GridError;
+use crate::paper::roots::RootFinding;
 
 /// How the paper's methods cut the region and sample rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,6 +14,8 @@ pub struct GridSettings {
     /// The largest distance between samples along a ray, as a part of a cell's largest side: from
     /// [`GridSettings::LEAST_STEP`] to 1.
     pub step: f64,
+    /// How roots are found between samples of unlike sign.
+    pub roots: RootFinding,
 }
 
 impl GridSettings {
@@ -26,9 +29,10 @@ impl GridSettings {
     pub const LARGEST_REFINEMENT: u32 = 64;
 
     /// The paper's settings for a grid of these cells: samples 1/20 of a cell apart, and cells examined again in 2 parts
-    /// along an axis of more than 20 cells, in 3 parts along a shorter one.
+    /// along an axis of more than 20 cells, in 3 parts along a shorter one; bisection.
     pub fn new(cells: [u32; 3]) -> Self {
-        Self { cells, refinement: cells.map(|count| if count > 20 { 2 } else { 3 }), step: Self::STEP }
+        let refinement = cells.map(|count| if count > 20 { 2 } else { 3 });
+        Self { cells, refinement, step: Self::STEP, roots: RootFinding::PAPER }
     }
 
     /// Checks all that does not depend on the method.

@@ -11,8 +11,8 @@ use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::random::Random;
 use iso_expr::{Decorated, Decoration, Engine, Interpreter, Interval, Program, Scratch};
 use iso_grid::{
-    Certified, Direct, Grid, GridError, GridSettings, Octree, Outcome, Ray, Region, Span, Stop, Surface,
-    Tracer, Workspace,
+    Certified, Direct, Grid, GridError, GridSettings, Octree, Outcome, Ray, Region, RootFinder, RootFinding,
+    Span, Stop, Surface, Tracer, Workspace,
 };
 
 /// Columns and rows of the tile that is traced.
@@ -52,10 +52,12 @@ fn trace_by_all(random: &mut Random, program: &Program, stop: &Stop) -> Result<(
     let region = Region::new(DVec3::splat(-HALF_SIDE), DVec3::splat(HALF_SIDE)).expect("the region has room");
     let rays = tile(random);
     let settings = GridSettings::new([8; 3]);
+    let [itp, newton] =
+        [RootFinder::Itp, RootFinder::Newton].map(|finder| RootFinding { finder, tolerance: 0.0 });
     let methods: [Box<dyn Tracer>; 3] = [
         Box::new(Grid::new(&surface, region, &settings)?),
-        Box::new(Octree::new(&surface, region, &settings)?),
-        Box::new(Direct::new(&surface, region, 1.0)?),
+        Box::new(Octree::new(&surface, region, &GridSettings { roots: itp, ..settings })?),
+        Box::new(Direct::new(&surface, region, 1.0, newton)?),
     ];
     for method in methods {
         outcomes(method.as_ref(), &rays).iter().for_each(check_places);

@@ -4,14 +4,10 @@ mod leaves;
 mod places;
 mod tree;
 
-use std::sync::Arc;
-
-use iso_expr::BatchKernel;
-
 use crate::paper::lattice::Lattice;
-use crate::paper::lockstep;
+use crate::paper::lockstep::Lockstep;
 use crate::paper::stretch::{Spacing, Stretch, Stretches};
-use crate::{Counters, GridError, GridSettings, Outcome, Ray, Region, Stop, Surface, Tracer, Workspace};
+use crate::{Counters, GridError, GridSettings, Outcome, Ray, Region, Surface, Tracer, Workspace};
 use tree::{Tree, TreeWalk};
 
 /// The paper's closing idea: the sign test of [`Grid`](crate::Grid), made on blocks of cells first.
@@ -27,12 +23,10 @@ use tree::{Tree, TreeWalk};
 /// A ray goes down from block to block, past everything that was dropped, and is sampled in existence cells just as in
 /// the grid.
 pub struct Octree {
-    values: Arc<dyn BatchKernel>,
-    region: Region,
+    lockstep: Lockstep,
     lattice: Lattice,
     tree: Tree,
     spacing: Spacing,
-    stop: Stop,
     preprocessing: Counters,
 }
 
@@ -44,29 +38,27 @@ impl Octree {
     ///
     /// # Errors
     /// When a setting is out of range, more than [`Octree::MOST_CELLS`] blocks of one size come up, the engine cannot
-    /// compile F − C, or the surface's [`Stop`] is requested.
+    /// compile F − C or its gradient, or the surface's [`Stop`] is requested.
     pub fn new(surface: &Surface, region: Region, settings: &GridSettings) -> Result<Self, GridError> {
         settings.check()?;
-        let values = Arc::clone(surface.values()?);
+        let values = surface.values()?;
         let lattice = Lattice::new(&region, settings.cells);
         let mut preprocessing = Counters::default();
         let leaves =
-            leaves::find(&*values, surface.stop(), &lattice, settings.refinement, &mut preprocessing)?;
+            leaves::find(&**values, surface.stop(), &lattice, settings.refinement, &mut preprocessing)?;
         let tree = Tree::new(&leaves, lattice.cells());
         let spacing = Spacing::new(settings.step, lattice.largest_side(), 1.0);
-        let stop = surface.stop().clone();
-        Ok(Self { values, region, lattice, tree, spacing, stop, preprocessing })
+        let lockstep = Lockstep::new(surface, region, settings.roots)?;
+        Ok(Self { lockstep, lattice, tree, spacing, preprocessing })
     }
 }
 
 impl Tracer for Octree {
     fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]) {
-        lockstep::trace(&*self.values, &self.stop, &self.region, workspace, rays, outcomes, |ray, span| {
-            LeafStretches {
-                walk: TreeWalk::new(&self.tree, &self.lattice, *ray, span),
-                spacing: self.spacing,
-                ray: *ray,
-            }
+        self.lockstep.trace(workspace, rays, outcomes, |ray, span| LeafStretches {
+            walk: TreeWalk::new(&self.tree, &self.lattice, *ray, span),
+            spacing: self.spacing,
+            ray: *ray,
         });
     }
 
