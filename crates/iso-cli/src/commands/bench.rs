@@ -9,12 +9,11 @@ use glam::DVec3;
 use iso_expr::engine::Points;
 use iso_expr::{CompileError, Engine, Interpreter, Scratch};
 use iso_grid::{Method, Region, Surface};
-use iso_jit::Jit;
 use iso_render::{Camera, Projection, Size, View};
 use serde::Serialize;
 
 use crate::clock::{Deadline, Spread, timed};
-use crate::engine::threads;
+use crate::engine::{native_code, threads};
 use crate::failure::Failure;
 use crate::flags::BenchFlags;
 use crate::formula::{minus_level, understand};
@@ -68,7 +67,7 @@ struct Round {
 
 impl Bench {
     fn report(&self, runs: usize) -> Result<Report, Failure> {
-        let engines: [Arc<dyn Engine>; 2] = [Arc::new(Interpreter), Arc::new(Jit::new()?)];
+        let engines: [Arc<dyn Engine>; 2] = [Arc::new(Interpreter), native_code()?];
         let mut rounds = [Vec::new(), Vec::new()];
         // The first round does not count: it fills caches and wakes the processor.
         in_turns(engines.len(), runs + 1, Deadline::never(), |turn| {

@@ -7,13 +7,12 @@ use std::time::Duration;
 use clap::ValueEnum;
 use iso_expr::{Interpreter, Program};
 use iso_grid::Surface;
-use iso_jit::{Jit, Kind};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
 use crate::clock::{milliseconds, timed};
 use crate::failure::Failure;
-use crate::flags::{ExplainFlags, KernelName, Section};
+use crate::flags::{ExplainFlags, Section};
 use crate::formula::{Source, Text, minus_level};
 use crate::hints::{Hint, hints};
 use crate::output::to_standard_output;
@@ -100,7 +99,7 @@ fn sections(flags: &ExplainFlags) -> Result<Vec<(Section, Shown)>, Failure> {
     let hints = timed(|| hints(&program));
     let simplified = timed(|| program.simplified());
     let gradient = timed(|| simplified.0.with_gradient().simplified());
-    let listing = Jit::new()?.listing(&simplified.0, kind(flags.sections.kernel))?;
+    let native = native_stages(flags, &simplified.0)?;
     // A model has no tree: its lines are the program.
     let tree = match &text {
         Text::Formula(ast) => ast.outline().to_string(),
@@ -114,20 +113,30 @@ fn sections(flags: &ExplainFlags) -> Result<Vec<(Section, Shown)>, Failure> {
         (Section::Hints, Stage::hints(&hints)),
         (Section::Simplified, Stage::program(&simplified)),
         (Section::Gradient, Stage::program(&gradient)),
-        (
-            Section::Clif,
-            Stage::new(listing.clif.lines().count(), "lines", listing.compile_time, listing.clif),
-        ),
-        (Section::Assembly, Stage::new(listing.code_bytes, "bytes", listing.compile_time, listing.assembly)),
     ];
-    let stages = stages.map(|(section, stage)| (section, Shown::Stage(stage)));
+    let stages = stages.into_iter().chain(native).map(|(section, stage)| (section, Shown::Stage(stage)));
     Ok([(Section::Plan, Shown::Plan(plan))].into_iter().chain(stages).collect())
 }
 
-fn kind(name: KernelName) -> Kind {
-    match name {
+/// What becomes of a program on the way to native code.
+#[cfg(feature = "jit")]
+fn native_stages(flags: &ExplainFlags, program: &Program) -> Result<Vec<(Section, Stage)>, Failure> {
+    use crate::flags::KernelName;
+    use iso_jit::{Jit, Kind};
+
+    let kind = match flags.sections.kernel {
         KernelName::Point => Kind::Point,
         KernelName::Batch => Kind::Batch,
         KernelName::Boxes => Kind::Boxes,
-    }
+    };
+    let listing = Jit::new()?.listing(program, kind)?;
+    let clif = Stage::new(listing.clif.lines().count(), "lines", listing.compile_time, listing.clif);
+    let assembly = Stage::new(listing.code_bytes, "bytes", listing.compile_time, listing.assembly);
+    Ok(vec![(Section::Clif, clif), (Section::Assembly, assembly)])
+}
+
+/// There are none in a program that is built without native code.
+#[cfg(not(feature = "jit"))]
+fn native_stages(_: &ExplainFlags, _: &Program) -> Result<Vec<(Section, Stage)>, Failure> {
+    Ok(Vec::new())
 }

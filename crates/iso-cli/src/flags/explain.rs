@@ -26,6 +26,7 @@ pub(crate) struct SectionFlags {
     pub(crate) sections: Vec<Section>,
 
     /// The kernel whose intermediate code and machine code are shown
+    #[cfg(feature = "jit")]
     #[arg(long, value_name = "KERNEL", value_enum, default_value_t = KernelName::Point)]
     pub(crate) kernel: KernelName,
 
@@ -50,12 +51,15 @@ pub(crate) enum Section {
     /// The program with its three derivatives, after simplification
     Gradient,
     /// Cranelift's intermediate code
+    #[cfg(feature = "jit")]
     Clif,
     /// Machine code
+    #[cfg(feature = "jit")]
     Assembly,
 }
 
 /// What a kernel runs over.
+#[cfg(feature = "jit")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum KernelName {
     /// F at one point

@@ -57,7 +57,7 @@ pub(crate) struct MethodFlags {
 #[command(next_help_heading = "Running")]
 pub(crate) struct EngineFlag {
     /// The engine that evaluates the formula; the results are the same
-    #[arg(long, value_name = "ENGINE", value_enum, default_value_t = EngineName::Jit)]
+    #[arg(long, value_name = "ENGINE", value_enum, default_value_t = EngineName::DEFAULT)]
     pub(crate) engine: EngineName,
 }
 
@@ -119,13 +119,16 @@ impl From<RootFinderName> for RootFinder {
 /// The engines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum EngineName {
-    /// Native code
+    /// Native code; not in programs that are built without it
     Jit,
     /// The interpreter
     Interp,
 }
 
 impl EngineName {
+    /// The fastest engine that this program is built with.
+    pub(crate) const DEFAULT: Self = if cfg!(feature = "jit") { Self::Jit } else { Self::Interp };
+
     /// The engine's name on the command line.
     pub(crate) fn name(self) -> &'static str {
         match self {

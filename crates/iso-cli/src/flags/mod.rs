@@ -16,7 +16,9 @@ mod trace;
 pub(crate) use bench::BenchFlags;
 pub(crate) use camera::CameraFlags;
 pub(crate) use eval::EvalFlags;
-pub(crate) use explain::{ExplainFlags, KernelName, Section};
+#[cfg(feature = "jit")]
+pub(crate) use explain::KernelName;
+pub(crate) use explain::{ExplainFlags, Section};
 pub(crate) use formula::{FormulaFlags, LevelFlag};
 pub(crate) use limit::LimitFlags;
 pub(crate) use method::{EngineFlag, EngineName, MethodFlags, MethodName, RegionFlag, ThreadsFlag};

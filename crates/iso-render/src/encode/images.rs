@@ -1,0 +1,93 @@
+//! Shaded pictures, in the format of a file's extension.
+
+use std::io::{Seek, Write};
+use std::path::Path;
+
+use image::codecs::jpeg::JpegEncoder;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder};
+
+use crate::{EncodeError, Picture};
+
+/// A file format for shaded pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ImageFormat(image::ImageFormat);
+
+impl ImageFormat {
+    /// The file name extensions that can be written.
+    pub const EXTENSIONS: [&'static str; 9] =
+        ["png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp", "ppm", "qoi"];
+
+    /// The format that belongs to the extension of `path`.
+    ///
+    /// # Errors
+    /// When there is no extension, or one that is not among [`ImageFormat::EXTENSIONS`].
+    pub fn of(path: &Path) -> Result<Self, EncodeError> {
+        let Some(extension) = path.extension().and_then(|extension| extension.to_str()) else {
+            return Err(EncodeError::UnknownFormat { given: format!("“{}”", path.display()) });
+        };
+        let extension = extension.to_ascii_lowercase();
+        let known = Self::EXTENSIONS.contains(&extension.as_str());
+        match image::ImageFormat::from_extension(&extension) {
+            Some(format) if known => Ok(Self(format)),
+            _ => Err(EncodeError::UnknownFormat { given: format!("“.{extension}”") }),
+        }
+    }
+}
+
+impl Picture {
+    /// Writes the shaded layer in `format`.
+    ///
+    /// # Errors
+    /// When the format cannot hold a picture of this size, or writing fails.
+    pub fn write_color(&self, format: ImageFormat, mut writer: impl Write + Seek) -> Result<(), EncodeError> {
+        let (bytes, width, height) = (self.color.as_flattened(), self.size.width(), self.size.height());
+        let rgb = ExtendedColorType::Rgb8;
+        match format.0 {
+            // The picture is waited for: half the compression time for a few per cent of size.
+            image::ImageFormat::Png => {
+                PngEncoder::new_with_quality(writer, CompressionType::Fast, FilterType::Adaptive)
+                    .write_image(bytes, width, height, rgb)?;
+            }
+            image::ImageFormat::Jpeg => {
+                JpegEncoder::new_with_quality(writer, 95).write_image(bytes, width, height, rgb)?;
+            }
+            other => image::write_buffer_with_format(&mut writer, bytes, width, height, rgb, other)?,
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use super::super::testing::picture;
+    use super::*;
+
+    #[test]
+    fn formats_come_from_extensions() {
+        for extension in ImageFormat::EXTENSIONS {
+            assert!(ImageFormat::of(Path::new(&format!("a.{extension}"))).is_ok(), "{extension}");
+            assert!(ImageFormat::of(Path::new(&format!("a.{}", extension.to_uppercase()))).is_ok());
+        }
+        for path in ["a", "a.", "a.txt", ".png", "a.exr"] {
+            assert!(
+                matches!(ImageFormat::of(Path::new(path)), Err(EncodeError::UnknownFormat { .. })),
+                "{path}"
+            );
+        }
+    }
+
+    #[test]
+    fn lossless_formats_read_back_as_written() {
+        let picture = picture();
+        for extension in ["png", "webp", "tiff", "bmp", "ppm", "qoi"] {
+            let format = ImageFormat::of(Path::new("a").with_extension(extension).as_path()).unwrap();
+            let mut file = Cursor::new(Vec::new());
+            picture.write_color(format, &mut file).unwrap();
+            let read = image::load_from_memory_with_format(file.get_ref(), format.0).unwrap().into_rgb8();
+            assert_eq!((read.dimensions(), read.as_raw().as_slice()), ((3, 2), picture.color.as_flattened()));
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Writing pictures: shaded ones in the format of a file's extension, depths and normals as OpenEXR.
+
+#[cfg(feature = "images")]
+mod images;
+#[cfg(feature = "openexr")]
+mod openexr;
+
+use thiserror::Error;
+
+#[cfg(feature = "images")]
+pub use images::ImageFormat;
+
+/// Why a picture could not be encoded.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum EncodeError {
+    /// The file's name ends in nothing that names a format.
+    #[cfg(feature = "images")]
+    #[error("{given} names no picture format that can be written; use one of {}", ImageFormat::EXTENSIONS.join(", "))]
+    UnknownFormat {
+        /// The extension as given, or a description where there is none.
+        given: String,
+    },
+    /// The format cannot hold the picture, or writing failed.
+    #[cfg(feature = "images")]
+    #[error("the picture cannot be written: {0}")]
+    Image(#[from] image::ImageError),
+    /// Writing an OpenEXR file failed.
+    #[cfg(feature = "openexr")]
+    #[error("the OpenEXR file cannot be written: {0}")]
+    OpenExr(#[from] exr::error::Error),
+}
+
+#[cfg(test)]
+mod testing {
+    use glam::DVec3;
+
+    use crate::{Layers, Picture, Size};
+
+    /// Six pixels, of which one shows something.
+    pub(super) fn picture() -> Picture {
+        let all = Layers { depth: true, normals: true, ..Layers::COLOR };
+        let mut picture = Picture::with_room(Size::new(3, 2).unwrap(), all).unwrap();
+        picture.color = (0..6).map(|pixel| [pixel, 40 * pixel, 255 - pixel]).collect();
+        picture.depth = vec![f64::NAN; 6];
+        picture.depth[4] = 1.25;
+        picture.normals[4] = DVec3::new(0.0, -0.6, 0.8);
+        picture
+    }
+}
