@@ -1,14 +1,16 @@
 //! Kernels over batches of boxes: a loop over pairs of boxes, one in each 128-bit lane.
 
 use std::mem::offset_of;
+use std::sync::Arc;
 
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{AbiParam, InstBuilder, MemFlagsData, Signature, Value, types};
 use cranelift_frontend::FunctionBuilder;
 use iso_expr::engine::{Boxes, Enclosures};
-use iso_expr::{BoxKernel, Decorated, Decoration, Node, Program, Scratch};
+use iso_expr::{BoxKernel, CompileError, Decorated, Decoration, Engine, Interpreter, Node, Program, Scratch};
 
 use crate::code::{Blueprint, Compiled};
+use crate::domain::Domain;
 use crate::enclosures::{self, Enclosure};
 use crate::host::{self, Limits};
 use crate::lanes::{Lanes, Writer};
@@ -36,16 +38,34 @@ type Enclose = unsafe extern "C" fn(&Places, usize, usize);
 pub(crate) struct NativeBoxes {
     compiled: Compiled<Enclose>,
     outputs: usize,
+    /// The [reach](Domain::reach) of the boxes for which the code was made.
+    reach: f64,
+    /// For all others: empty, unbounded and huge ones.
+    interpreted: Arc<dyn BoxKernel>,
 }
 
 impl NativeBoxes {
-    pub(crate) fn new(program: &Program, compiled: Compiled<Enclose>) -> Self {
-        Self { compiled, outputs: program.outputs().len() }
+    pub(crate) fn new(
+        blueprint: &BoxBlueprint<'_>,
+        compiled: Compiled<Enclose>,
+    ) -> Result<Self, CompileError> {
+        let BoxBlueprint { program, domain } = blueprint;
+        let interpreted = Interpreter.boxes(program)?;
+        Ok(Self { compiled, outputs: program.outputs().len(), reach: domain.reach, interpreted })
+    }
+
+    /// Whether the code was made for all of the boxes.
+    fn takes(&self, boxes: Boxes<'_>) -> bool {
+        let mut sides = boxes.lo.iter().zip(&boxes.hi).flat_map(|(lo, hi)| lo.iter().zip(*hi));
+        sides.all(|(lo, hi)| Domain::holds(self.reach, *lo, *hi))
     }
 }
 
 impl BoxKernel for NativeBoxes {
-    fn evaluate(&self, _: &mut Scratch, boxes: Boxes<'_>, enclosures: Enclosures<'_>) {
+    fn evaluate(&self, scratch: &mut Scratch, boxes: Boxes<'_>, enclosures: Enclosures<'_>) {
+        if !self.takes(boxes) {
+            return self.interpreted.evaluate(scratch, boxes, enclosures);
+        }
         let Enclosures { lo, hi, decoration } = enclosures;
         let count = boxes.lo[0].len();
         assert!(boxes.lo.iter().chain(&boxes.hi).all(|ends| ends.len() == count), "six ends for each box");
@@ -73,7 +93,16 @@ impl BoxKernel for NativeBoxes {
 
 /// Takes what [`Enclose`] names, and walks through it round by round. The last round ends with the last box, and so may
 /// take one box a second time, which changes nothing.
-pub(crate) struct BoxBlueprint<'a>(pub(crate) &'a Program);
+pub(crate) struct BoxBlueprint<'a> {
+    program: &'a Program,
+    domain: Domain,
+}
+
+impl<'a> BoxBlueprint<'a> {
+    pub(crate) fn new(program: &'a Program) -> Self {
+        Self { program, domain: Domain::of(program) }
+    }
+}
 
 impl Blueprint for BoxBlueprint<'_> {
     const NAME: &'static str = "boxes";
@@ -99,7 +128,7 @@ impl Blueprint for BoxBlueprint<'_> {
         builder.switch_to_block(round);
         let mut round_of_boxes =
             Round { writer: Writer::new(builder, Lanes::Two), places, count, index, second };
-        round_of_boxes.write(calls, self.0);
+        round_of_boxes.write(calls, self.program, &self.domain.ranges);
         let next = builder.ins().iadd_imm_s(index, PAIR as i64);
         let beyond = builder.ins().icmp(IntCC::UnsignedGreaterThan, next, last);
         let next = builder.ins().select(beyond, last, next);
@@ -128,27 +157,21 @@ struct Round<'a, 'b> {
 }
 
 impl Round<'_, '_> {
-    fn write(&mut self, calls: &mut Calls<'_>, program: &Program) {
+    fn write(&mut self, calls: &mut Calls<'_>, program: &Program, ranges: &[Decorated]) {
         let mut room = None;
         let mut enclosures: Vec<Enclosure> = Vec::with_capacity(program.nodes().len());
-        for node in program.nodes() {
+        for (node, range) in program.nodes().iter().zip(ranges) {
             enclosures.push(match node {
-                Node::Variable(axis) => self.argument(*axis as usize),
-                Node::Constant(constant) => {
-                    enclosures::constant(&mut self.writer, Decorated::constant(constant.enclosure()))
-                }
+                Node::Variable(axis) => self.argument(*axis as usize, *range),
+                Node::Constant(_) => enclosures::constant(&mut self.writer, *range),
                 Node::Apply(operation, operands) => {
-                    let constants = [operands[0], operands[1]].map(|id| match program.node(id) {
-                        Node::Constant(constant) => Some(Decorated::constant(constant.enclosure())),
-                        _ => None,
-                    });
                     let operands = operands.map(|id| enclosures[id.index()]);
-                    enclosures::apply(&mut self.writer, *operation, operands, constants).unwrap_or_else(
-                        || {
-                            let room = room.get_or_insert_with(|| Room::new(&mut self.writer));
-                            room.call(&mut self.writer, calls, *operation, &operands[..operation.arity()])
-                        },
-                    )
+                    let written = enclosures::apply(&mut self.writer, *operation, operands, *range);
+                    written.unwrap_or_else(|| {
+                        let room = room.get_or_insert_with(|| Room::new(&mut self.writer));
+                        let operands = &operands[..operation.arity()];
+                        room.call(&mut self.writer, calls, *operation, operands, *range)
+                    })
                 }
             });
         }
@@ -160,7 +183,7 @@ impl Round<'_, '_> {
     }
 
     /// The boxes' extents along an axis.
-    fn argument(&mut self, axis: usize) -> Enclosure {
+    fn argument(&mut self, axis: usize, range: Decorated) -> Enclosure {
         let offset = axis * size_of::<*const f64>();
         let [lo, hi] = [offset_of!(Places, lo), offset_of!(Places, hi)].map(|ends| {
             let [low, high] = self.elements(ends + offset, size_of::<f64>(), self.index).map(|address| {
@@ -169,12 +192,12 @@ impl Round<'_, '_> {
             let pair = self.writer.builder.ins().scalar_to_vector(types::F64X2, low);
             self.writer.builder.ins().insertlane(pair, high, 1)
         });
-        enclosures::argument(&mut self.writer, lo, hi)
+        enclosures::argument(&mut self.writer, lo, hi, range)
     }
 
     /// Puts an output's enclosures at its `place` and the one `second` after it.
     fn store(&mut self, enclosure: Enclosure, place: Value) {
-        let hi = self.writer.builder.ins().fneg(enclosure.minus_hi);
+        let hi = self.writer.negated(enclosure.minus_hi);
         for (end, offset) in
             [(enclosure.lo, offset_of!(Places, output_lo)), (hi, offset_of!(Places, output_hi))]
         {
@@ -183,7 +206,8 @@ impl Round<'_, '_> {
                 self.writer.builder.ins().store(MemFlagsData::trusted(), end, address, 0);
             }
         }
-        let decoration = enclosures::decoration(&mut self.writer, enclosure.known);
+        let known = enclosure.known(&mut self.writer);
+        let decoration = enclosures::decoration(&mut self.writer, known);
         let addresses = self.elements(offset_of!(Places, output_decoration), size_of::<Decoration>(), place);
         for (lane, address) in addresses.into_iter().enumerate() {
             let decoration = self.writer.builder.ins().extractlane(decoration, lane as u8);

@@ -53,7 +53,7 @@ impl Jit {
         match kind {
             Kind::Point => self.list(&program, &PointBlueprint(&program)),
             Kind::Batch => self.list(&program, &BatchBlueprint::new(&program)),
-            Kind::Boxes => self.list(&program, &BoxBlueprint(&program)),
+            Kind::Boxes => self.list(&program, &BoxBlueprint::new(&program)),
         }
     }
 
@@ -93,8 +93,9 @@ impl Engine for Jit {
     fn boxes(&self, program: &Program) -> Result<Arc<dyn BoxKernel>, CompileError> {
         // Integer powers stay: an interval's square is narrower than its product with itself.
         let program = program.pruned();
-        let compiled = self.compile(&program, &BoxBlueprint(&program))?;
-        Ok(Arc::new(NativeBoxes::new(&program, compiled)))
+        let blueprint = BoxBlueprint::new(&program);
+        let compiled = self.compile(&program, &blueprint)?;
+        Ok(Arc::new(NativeBoxes::new(&blueprint, compiled)?))
     }
 }
 

@@ -83,6 +83,12 @@ impl Writer<'_, '_> {
         Mask(self.builder.ins().fcmp(condition, a, b))
     }
 
+    /// Where `a` is a zero.
+    pub(crate) fn is_zero(&mut self, a: Value) -> Mask {
+        let zero = self.constant(0.0);
+        self.compare(FloatCC::Equal, a, zero)
+    }
+
     /// Where `a` is NaN.
     pub(crate) fn is_nan(&mut self, a: Value) -> Mask {
         self.compare(FloatCC::Unordered, a, a)
@@ -150,16 +156,6 @@ impl Writer<'_, '_> {
         Mask(self.builder.ins().bor(a, b))
     }
 
-    /// Where `a` holds and `b` does not.
-    pub(crate) fn but_not(&mut self, Mask(a): Mask, Mask(b): Mask) -> Mask {
-        Mask(self.builder.ins().band_not(a, b))
-    }
-
-    /// Where it does not hold.
-    pub(crate) fn not(&mut self, Mask(a): Mask) -> Mask {
-        Mask(self.builder.ins().bnot(a))
-    }
-
     /// `a` where the mask holds, else +0.
     pub(crate) fn keep(&mut self, mask: Mask, a: Value) -> Value {
         let mask = self.doubles(mask.0);
@@ -176,6 +172,18 @@ impl Writer<'_, '_> {
     pub(crate) fn undefine(&mut self, mask: Mask, a: Value) -> Value {
         let mask = self.doubles(mask.0);
         self.builder.ins().bor(a, mask)
+    }
+
+    /// `a` with the other sign: one instruction, where Cranelift's own needs two more for the sign.
+    pub(crate) fn negated(&mut self, a: Value) -> Value {
+        let sign = self.constant(-0.0);
+        self.builder.ins().bxor(a, sign)
+    }
+
+    /// The absolute value, in one instruction.
+    pub(crate) fn magnitude(&mut self, a: Value) -> Value {
+        let sign = self.constant(-0.0);
+        self.builder.ins().band_not(a, sign)
     }
 
     /// The bits of two doubles as integers.

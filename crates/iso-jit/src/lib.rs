@@ -13,6 +13,7 @@
 mod batch;
 mod boxes;
 mod code;
+mod domain;
 mod elementary;
 mod enclosures;
 mod engine;

@@ -85,13 +85,15 @@ impl Room {
         calls: &mut Calls<'_>,
         operation: Operation,
         operands: &[Enclosure],
+        range: Decorated,
     ) -> Enclosure {
         for (place, operand) in operands.iter().enumerate() {
+            let known = operand.known(writer);
             let start = place * size_of::<Pair>();
             for (value, offset) in [
                 (operand.lo, start + offset_of!(Pair, lo)),
                 (operand.minus_hi, start + offset_of!(Pair, minus_hi)),
-                (operand.known, start + offset_of!(Pair, known)),
+                (known, start + offset_of!(Pair, known)),
             ] {
                 writer.builder.ins().stack_store(types::I64, value, self.0, offset as i32);
             }
@@ -114,7 +116,8 @@ impl Room {
         Enclosure {
             lo: load(types::F64, offset_of!(Pair, lo)),
             minus_hi: load(types::F64, offset_of!(Pair, minus_hi)),
-            known: load(types::I64, offset_of!(Pair, known)),
+            known: (range.decoration < Decoration::Common).then(|| load(types::I64, offset_of!(Pair, known))),
+            range,
         }
     }
 }

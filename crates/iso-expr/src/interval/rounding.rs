@@ -14,10 +14,10 @@
 //!
 //! # Recipe
 //!
-//! With `bits` the double as a 64-bit integer and every comparison giving a mask of all ones or all zeros:
+//! With `bits` the double as a signed 64-bit integer, every comparison being one of integers that gives 1 or 0:
 //!
 //! ```text
-//! round_down(x) = bits − (((bits < 0) | 1) & (x > −∞) & (bits ≠ 0))      `bits < 0` as signed integers
+//! round_down(x) = bits − (bits > 0) + (bits < the bits of −∞)
 //!
 //! least(p, q, r, s) = lesser(lesser(p, q), lesser(r, s)) | ((p | q | r | s) & sign bit)
 //! lesser(p, q)      = p < q ? p : q
@@ -53,10 +53,11 @@
 /// greatest such bound or the one below it. +∞ becomes the greatest double, −0 the smallest negative one.
 #[inline]
 pub fn round_down(value: f64) -> f64 {
+    const MINUS_INFINITY: i64 = f64::NEG_INFINITY.to_bits() as i64;
     let bits = value.to_bits() as i64;
-    let step = (bits >> 63) | 1;
-    let moves = (value > f64::NEG_INFINITY) & (bits != 0);
-    f64::from_bits((bits - if moves { step } else { 0 }) as u64)
+    // As integers, negative doubles count from −0, the least, up to −∞, and NaNs stand beyond the infinities. Of the positive NaNs
+    // the payload is lowered, and arithmetic gives none that would become +∞.
+    f64::from_bits((bits - i64::from(bits > 0) + i64::from(bits < MINUS_INFINITY)) as u64)
 }
 
 /// The least double above `value`, except that +∞ and NaN stay, and so does −0: the mirror image of [`round_down`].
@@ -99,7 +100,9 @@ mod tests {
             assert_eq!(round_down(value), value.next_down(), "below {value:e}");
             assert_eq!(round_up(value), value.next_up(), "above {value:e}");
         }
-        assert!(round_down(f64::NAN).is_nan() && round_up(f64::NAN).is_nan());
+        for nan in [f64::NAN, -f64::NAN, f64::from_bits(u64::MAX), f64::from_bits(u64::MAX >> 1)] {
+            assert!(round_down(nan).is_nan() && round_up(nan).is_nan());
+        }
     }
 
     #[test]

@@ -29,8 +29,16 @@ fn enclosures(
     ends.zip(decoration).map(|((lo, hi), decoration)| (lo, hi, decoration)).collect()
 }
 
-/// Native code gives the interpreter's enclosures over `boxes`.
+/// Native code gives the interpreter's enclosures over `boxes`, and over those of them that are bounded and of moderate size, for
+/// which the code is made; any other box in a batch leaves all of it to the interpreter.
 pub(crate) fn enclosures_agree(jit: &Jit, program: &Program, boxes: &[[Decorated; 3]]) {
+    all_agree(jit, program, boxes);
+    let is_moderate = |side: &Decorated| side.interval.magnitude() <= 65_536.0;
+    let moderate: Vec<_> = boxes.iter().copied().filter(|sides| sides.iter().all(is_moderate)).collect();
+    all_agree(jit, program, &moderate);
+}
+
+fn all_agree(jit: &Jit, program: &Program, boxes: &[[Decorated; 3]]) {
     let native = enclosures(jit, program, boxes);
     let expected = enclosures(&Interpreter, program, boxes);
     for (place, (native, expected)) in native.iter().zip(&expected).enumerate() {
