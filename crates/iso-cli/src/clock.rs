@@ -48,6 +48,30 @@ pub(crate) fn add_to<T>(phase: &mut f64, work: impl FnOnce() -> T) -> T {
     result
 }
 
+/// Milliseconds that something took.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(crate) struct Cost {
+    /// On the clock on the wall.
+    pub(crate) wall: f64,
+    /// On processors, all threads together, where the system tells.
+    pub(crate) processor: Option<f64>,
+}
+
+impl Cost {
+    /// A part of it, from 0 to 1.
+    pub(crate) fn share(self, part: f64) -> Self {
+        Self { wall: part * self.wall, processor: self.processor.map(|processor| part * processor) }
+    }
+}
+
+/// Runs `work` and says what it cost.
+pub(crate) fn weighed<T>(work: impl FnOnce() -> T) -> (T, Cost) {
+    let before = processor_time();
+    let (result, wall) = timed(work);
+    let processor = before.zip(processor_time()).map(|(before, after)| milliseconds(after - before));
+    (result, Cost { wall: milliseconds(wall), processor })
+}
+
 /// A time after which nothing new is begun.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Deadline {
@@ -66,6 +90,12 @@ impl Deadline {
         Self::after(Duration::MAX)
     }
 
+    /// A deadline that gives a fair part of the time that is left to the first of `claimants`.
+    pub(crate) fn share(&self, claimants: usize) -> Self {
+        let left = self.allowed.saturating_sub(self.watch.elapsed());
+        Self::after(left / u32::try_from(claimants).unwrap_or(u32::MAX).max(1))
+    }
+
     /// Whether it has come.
     pub(crate) fn is_over(&self) -> bool {
         self.watch.elapsed() >= self.allowed
@@ -74,14 +104,14 @@ impl Deadline {
 
 /// The time that all threads of this process spent on processors so far, where the system tells.
 #[cfg(unix)]
-pub(crate) fn processor_time() -> Option<Duration> {
+fn processor_time() -> Option<Duration> {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
     Some(Duration::new(time.tv_sec.try_into().ok()?, time.tv_nsec.try_into().ok()?))
 }
 
 /// The time that all threads of this process spent on processors so far, where the system tells.
 #[cfg(not(unix))]
-pub(crate) fn processor_time() -> Option<Duration> {
+fn processor_time() -> Option<Duration> {
     None
 }
 

@@ -4,6 +4,7 @@
 //! one [`failure::Failure`], which [`report`] draws.
 
 mod camera;
+mod chart;
 mod clock;
 mod commands;
 mod comparison;

@@ -9,7 +9,7 @@ use iso_render::{
     Camera, Layers, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, Wanted, render,
 };
 
-use crate::clock::{Deadline, Phases, add_to, milliseconds, processor_time, timed};
+use crate::clock::{Cost, Deadline, weighed};
 use crate::failure::Failure;
 
 /// Which candidate is measured for which time, both counted from 0.
@@ -37,23 +37,35 @@ pub(crate) fn in_turns<E>(
     Ok(true)
 }
 
-/// What one picture took once. Times are in milliseconds.
+/// What one picture took once.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     /// From programs to colours; parsing and files are left out.
-    pub(crate) total: f64,
-    /// The parts of `total`.
-    pub(crate) phases: Phases,
-    /// Time on processors, all threads together.
-    pub(crate) processor: Option<f64>,
+    pub(crate) total: Cost,
+    /// Its parts.
+    pub(crate) phases: PhaseCosts,
     /// The most memory that the process held meanwhile, in MiB.
     pub(crate) peak_memory: Option<f64>,
 }
 
+/// What the phases of a picture cost.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PhaseCosts {
+    /// From programs to kernels.
+    pub(crate) compile: Cost,
+    /// What the method prepares before the first ray.
+    pub(crate) preprocess: Cost,
+    /// Following rays.
+    pub(crate) trace: Cost,
+    /// Normals and colours.
+    pub(crate) shade: Cost,
+}
+
 impl Sample {
-    /// What of the total belongs to no phase.
+    /// What of the total belongs to no phase, on the wall.
     pub(crate) fn other(&self) -> f64 {
-        self.total - self.phases.total()
+        let PhaseCosts { compile, preprocess, trace, shade } = self.phases;
+        self.total.wall - (compile.wall + preprocess.wall + trace.wall + shade.wall)
     }
 }
 
@@ -71,11 +83,8 @@ impl Subject {
     /// Draws the picture once and says what it took.
     pub(crate) fn measure(&self, engine: &Arc<dyn Engine>, method: &Method) -> Result<Sample, Failure> {
         forget_peak_memory();
-        let before = processor_time();
-        let (drawn, total) = timed(|| self.draw(engine, method, Layers::COLOR, |tracer| tracer));
-        let processor = before.zip(processor_time()).map(|(before, after)| milliseconds(after - before));
-        let Drawn { phases, .. } = drawn?;
-        Ok(Sample { total: milliseconds(total), phases, processor, peak_memory: peak_memory() })
+        let (drawn, total) = weighed(|| self.draw(engine, method, Layers::COLOR, |tracer| tracer));
+        Ok(Sample { total, phases: drawn?.phases, peak_memory: peak_memory() })
     }
 
     /// Draws the picture with `layers`, following rays as `adapt` makes of the method.
@@ -86,7 +95,6 @@ impl Subject {
         layers: Layers,
         adapt: impl FnOnce(Box<dyn Tracer>) -> Box<dyn Tracer>,
     ) -> Result<Drawn, Failure> {
-        let mut phases = Phases::default();
         let plan = Plan::new(&Wanted {
             program: &self.program,
             method: *method,
@@ -97,8 +105,10 @@ impl Subject {
             smoothing: Smoothing::NONE,
         });
         let surface = Surface::new(Arc::clone(engine), self.program.clone());
-        add_to(&mut phases.compile, || plan.compile(&surface))?;
-        let tracer = adapt(add_to(&mut phases.preprocess, || plan.tracer(&surface, self.region))?);
+        let (compiled, compile) = weighed(|| plan.compile(&surface));
+        compiled?;
+        let (prepared, preprocess) = weighed(|| plan.tracer(&surface, self.region));
+        let tracer = adapt(prepared?);
         let shading = Shading::new(&self.camera, false);
         let scene = Scene {
             plan: &plan,
@@ -107,12 +117,14 @@ impl Subject {
             camera: &self.camera,
             shading: &shading,
         };
-        let picture = render(&scene, self.size, &|_, _| ())?;
-        phases.trace = 1e3 * picture.trace_seconds;
-        phases.shade = 1e3 * picture.shade_seconds;
+        let (rendered, cost) = weighed(|| render(&scene, self.size, &|_, _| ()));
+        let picture = rendered?;
+        // Threads trace and shade in turns: what they spent together is divided as their times on the wall are.
+        let tracing = picture.trace_seconds / (picture.trace_seconds + picture.shade_seconds);
+        let [trace, shade] = [tracing, 1.0 - tracing].map(|part| cost.share(part));
         let mut counters = picture.counters;
         counters += tracer.preprocessing();
-        Ok(Drawn { picture, counters, phases })
+        Ok(Drawn { picture, counters, phases: PhaseCosts { compile, preprocess, trace, shade } })
     }
 }
 
@@ -120,7 +132,7 @@ impl Subject {
 pub(crate) struct Drawn {
     pub(crate) picture: Picture,
     pub(crate) counters: Counters,
-    pub(crate) phases: Phases,
+    pub(crate) phases: PhaseCosts,
 }
 
 /// Lets Linux count the peak of this process's memory anew; elsewhere nothing happens.

@@ -99,8 +99,8 @@ impl Bench {
         Ok(Round {
             point_nanoseconds,
             batch_nanoseconds,
-            compile_milliseconds: picture.phases.compile,
-            picture_milliseconds: picture.total - picture.phases.compile,
+            compile_milliseconds: picture.phases.compile.wall,
+            picture_milliseconds: picture.total.wall - picture.phases.compile.wall,
         })
     }
 

@@ -21,9 +21,11 @@ pub(crate) use explain::KernelName;
 pub(crate) use explain::{ExplainFlags, Section};
 pub(crate) use formula::{FormulaFlags, LevelFlag};
 pub(crate) use limit::LimitFlags;
-pub(crate) use method::{EngineFlag, EngineName, MethodFlags, MethodName, RegionFlag, ThreadsFlag};
+pub(crate) use method::{
+    EngineFlag, EngineName, MethodFlags, MethodName, RegionFlag, RootFinderName, ThreadsFlag,
+};
 pub(crate) use render::{LayerFlags, PictureFlags, RenderFlags, SummaryFlags};
-pub(crate) use report::ReportFlags;
+pub(crate) use report::{AxesFlags, ReportFlags, SuiteName};
 pub(crate) use stress::StressFlags;
 pub(crate) use trace::TraceFlags;
 

@@ -1,26 +1,27 @@
 //! Flags of `iso report`.
 
+use std::ffi::OsString;
 use std::num::NonZeroU32;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use iso_grid::GridSettings;
 use iso_render::Size;
 
-use super::{CameraFlags, FormulaFlags, LevelFlag, RegionFlag, ThreadsFlag};
-use crate::values;
+use super::{CameraFlags, EngineName, LevelFlag, MethodName, RegionFlag, RootFinderName, ThreadsFlag};
+use crate::values::{self, Setting};
 
 /// Measure what error each method and setting buys for what time
 ///
-/// Draws one picture with every engine, method and setting in turns, and holds each pixel against what the certified method
-/// proves of that pixel alone. The folder of the report gets report.csv, report.json, the page report.html, and its plots
-/// error.svg and cells.svg. They are written anew after every measurement, so that an interrupted report is kept.
+/// Draws a picture with every engine, method and setting in turns, and holds each pixel against what the certified method
+/// proves of that pixel alone. The folder of the report gets report.csv, report.json, the page report.html, and its plots.
+/// They are written anew while it goes on, so that an interrupted report is kept.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct ReportFlags {
     #[command(flatten)]
-    pub(crate) formula: FormulaFlags,
+    pub(crate) subject: SubjectFlags,
     #[command(flatten)]
     pub(crate) level: LevelFlag,
     #[command(flatten)]
@@ -28,12 +29,88 @@ pub(crate) struct ReportFlags {
     #[command(flatten)]
     pub(crate) camera: CameraFlags,
     #[command(flatten)]
+    pub(crate) axes: AxesFlags,
+    #[command(flatten)]
     pub(crate) sweep: SweepFlags,
     #[command(flatten)]
     pub(crate) threads: ThreadsFlag,
 }
 
-/// What is measured.
+/// Which surfaces are drawn.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Formula")]
+pub(crate) struct SubjectFlags {
+    /// The formula; `@FILE` reads it from a file, `-` from standard input, `FILE.vm` is a model
+    #[arg(value_name = "FORMULA", allow_hyphen_values = true, required_unless_present = "suite")]
+    pub(crate) formula: Option<OsString>,
+
+    /// Give a parameter of the formula another value; may be repeated
+    #[arg(long = "set", value_name = "NAME=NUMBER")]
+    pub(crate) settings: Vec<Setting>,
+
+    /// Draw the scenes of a suite instead, in one report; they share the budget
+    #[arg(long, value_name = "SUITE", value_enum, conflicts_with_all = ["formula", "settings", "level", "region"])]
+    pub(crate) suite: Option<SuiteName>,
+}
+
+/// The suites of scenes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SuiteName {
+    /// Surfaces that everybody draws
+    Classic,
+    /// Steep, thin, tiny and cancelling ones
+    Stiff,
+    /// Both, and poles, jumps, plateaus and the like
+    All,
+}
+
+/// What is varied.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Axes of the sweep")]
+pub(crate) struct AxesFlags {
+    /// Methods of intersection
+    #[arg(long, value_name = "METHOD,...", value_delimiter = ',', value_enum)]
+    #[arg(default_values = ["certified", "grid", "octree", "direct"])]
+    pub(crate) methods: Vec<MethodName>,
+
+    /// Engines
+    #[arg(long, value_name = "ENGINE,...", value_delimiter = ',', value_enum, default_values = ["jit", "interp"])]
+    pub(crate) engines: Vec<EngineName>,
+
+    /// Cells along every axis, for the methods grid and octree
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_values_t = [8, 15, 30, 60])]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=i64::from(GridSettings::MOST_CELLS)))]
+    pub(crate) grids: Vec<u32>,
+
+    /// Parts into which a cell beside the surface is cut, beside the default of each grid: 3 up to 20 cells, else 2
+    #[arg(long, value_name = "M,...", value_delimiter = ',', default_values_t = [1, 2, 3])]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=i64::from(GridSettings::LARGEST_REFINEMENT)))]
+    pub(crate) refines: Vec<u32>,
+
+    /// Steps between samples, in parts of a cell; the method direct steps as for a grid of 30
+    #[arg(long, value_name = "STEP,...", value_delimiter = ',', value_parser = values::step)]
+    #[arg(default_values = ["0.05", "0.01"])]
+    pub(crate) steps: Vec<f64>,
+
+    /// Root finders, for the methods that sample
+    #[arg(long, value_name = "FINDER,...", value_delimiter = ',', value_enum)]
+    #[arg(default_values = ["bisection", "itp", "newton"])]
+    pub(crate) root_finders: Vec<RootFinderName>,
+
+    /// Widths, relative to t, to which roots are narrowed; 0 goes on as far as the method does
+    #[arg(long, value_name = "WIDTH,...", value_delimiter = ',', value_parser = values::tolerance)]
+    #[arg(default_values = ["0", "1e-6"])]
+    pub(crate) tolerances: Vec<f64>,
+
+    /// Measure all combinations
+    ///
+    /// Without it, grids are combined with everything, and of engines, parts, steps and ways to find roots one at a time leaves the first
+    /// of its list; ways to find roots vary in the middle one of the grids.
+    #[arg(long)]
+    pub(crate) cross: bool,
+}
+
+/// How it is measured, and where it goes.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Sweep")]
 pub(crate) struct SweepFlags {
@@ -41,17 +118,7 @@ pub(crate) struct SweepFlags {
     #[arg(short, long, value_name = "FOLDER", default_value = "report")]
     pub(crate) output: PathBuf,
 
-    /// Cells along every axis, for the methods grid and octree
-    #[arg(long, value_name = "N,...", value_delimiter = ',', default_values_t = [8, 15, 30, 60])]
-    #[arg(value_parser = clap::value_parser!(u32).range(1..=i64::from(GridSettings::MOST_CELLS)))]
-    pub(crate) grids: Vec<u32>,
-
-    /// Steps between samples, in parts of a cell; the method direct steps as for a grid of 30
-    #[arg(long, value_name = "STEP,...", value_delimiter = ',', value_parser = values::step)]
-    #[arg(default_values = ["0.05", "0.01"])]
-    pub(crate) steps: Vec<f64>,
-
-    /// Width and height of the picture
+    /// Width and height of the pictures
     #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "256x256")]
     pub(crate) size: Size,
 
@@ -71,5 +138,6 @@ pub(crate) struct SweepFlags {
 const EXAMPLES: &str = "\
 Examples:
   iso report '(x^2+y^2-1)^2 + 4z^2 + 0.5x = 0.2' --budget 60s -o report/
-  iso report 'sin(1/x) + y = z' --box 0.01,1 --grids 30,120 --steps 0.05
+  iso report 'sin(1/x) + y = z' --box 0.01,1 --methods grid,octree --grids 30,120 --steps 0.05
+  iso report --suite classic --budget 10m -o classic/
   iso report @surface.txt --size 512x512 --runs 9 --budget 5m --json";

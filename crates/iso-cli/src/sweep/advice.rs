@@ -5,46 +5,75 @@ use iso_render::Picture;
 
 use super::Run;
 
+/// How many times as long a run may take to count as about as fast.
+const ABOUT_AS_FAST: f64 = 1.1;
+
+/// How many settings a note names.
+const MOST_RIVALS: usize = 4;
+
 /// The runs that none beats both in time and in wrong pixels, from fast to slow.
 pub(super) fn front(runs: &[Run]) -> Vec<&Run> {
-    let mut sorted: Vec<&Run> = runs.iter().collect();
+    front_by(runs, |run| run.quality.wrong() as f64)
+}
+
+/// The runs that none beats both in time and in an error, from fast to slow. Those without an error are left out.
+pub(super) fn front_by(runs: &[Run], error: impl Fn(&Run) -> f64) -> Vec<&Run> {
+    let mut sorted: Vec<&Run> = runs.iter().filter(|run| !error(run).is_nan()).collect();
     sorted.sort_by(|one, other| {
-        let time = one.milliseconds.median.total_cmp(&other.milliseconds.median);
-        time.then(one.quality.wrong().cmp(&other.quality.wrong()))
+        let time = one.time().median.total_cmp(&other.time().median);
+        time.then(error(one).total_cmp(&error(other)))
     });
-    let mut fewest = usize::MAX;
+    let mut least = f64::INFINITY;
     sorted.retain(|run| {
-        let is_better = run.quality.wrong() < fewest;
-        fewest = fewest.min(run.quality.wrong());
+        let is_better = error(run) < least;
+        least = least.min(error(run));
         is_better
     });
     sorted
 }
 
+/// The fastest run with the fewest wrong pixels, or the one of those about as fast that finds roots best.
+fn recommended(runs: &[Run]) -> Option<&Run> {
+    let best = *front(runs).last()?;
+    let is_as_good = |run: &&Run| {
+        run.quality.wrong() == best.quality.wrong() && run.time().median <= ABOUT_AS_FAST * best.time().median
+    };
+    let distance = |run: &Run| run.quality.distance.p999;
+    runs.iter().filter(is_as_good).min_by(|one, other| {
+        distance(one).total_cmp(&distance(other)).then(one.time().median.total_cmp(&other.time().median))
+    })
+}
+
 /// What to use for this formula, and what it costs.
 pub(super) fn advice(runs: &[Run], pixels: usize) -> String {
     let front = front(runs);
-    let (Some(fastest), Some(best)) = (front.first(), front.last()) else {
+    let (Some(fastest), Some(best)) = (front.first(), recommended(runs)) else {
         return "Nothing was measured yet.".to_owned();
     };
     let time = |run: &Run| {
-        let spread = run.milliseconds;
+        let spread = run.time();
         format!("{:.1} ms ({:.1} to {:.1})", spread.median, spread.least, spread.greatest)
     };
-    let wrong = |run: &Run| match run.quality.wrong() {
-        0 => "no wrong pixel".to_owned(),
-        1 => format!("1 of {pixels} pixels wrong"),
-        wrong => format!("{wrong} of {pixels} pixels wrong"),
+    let wrong = |run: &Run| {
+        let pixels = match run.quality.wrong() {
+            0 => "no wrong pixel".to_owned(),
+            1 => format!("1 of {pixels} pixels wrong"),
+            wrong => format!("{wrong} of {pixels} pixels wrong"),
+        };
+        match run.quality.distance.p999 {
+            distance if distance.is_nan() => pixels,
+            distance => format!("{pixels} and roots to {distance:.0e}"),
+        }
     };
     let mut text = format!("Use {}: {}, with {}.", best.setting.flags, time(best), wrong(best));
     if fastest.setting != best.setting {
         let flags = &fastest.setting.flags;
         text.push_str(&format!(" The fastest is {flags}: {}, with {}.", time(fastest), wrong(fastest)));
     }
-    let proof = runs.iter().filter(|run| run.setting.method == Method::CERTIFIED);
-    if let Some(proof) =
-        proof.min_by(|one, other| one.milliseconds.median.total_cmp(&other.milliseconds.median))
-        && proof.setting != best.setting
+    let is_proven = |run: &&Run| matches!(run.setting.method, Method::Certified { .. });
+    let proof = runs.iter().filter(is_proven);
+    if let Some(proof) = proof.min_by(|one, other| one.time().median.total_cmp(&other.time().median))
+        && !is_proven(&best)
     {
         let flags = &proof.setting.flags;
         text.push_str(&format!(" To have it proven, use {flags}: {}.", time(proof)));
@@ -63,23 +92,25 @@ pub(super) fn notes(runs: &[Run], proven: &Picture) -> Vec<String> {
         ));
     }
     for pair in front(runs).windows(2) {
-        if pair[0].milliseconds.greatest >= pair[1].milliseconds.least {
+        if pair[0].time().greatest >= pair[1].time().least {
             let [one, other] = [0, 1].map(|place: usize| &pair[place].setting.flags);
             notes.push(format!("The machine was too noisy to rank by time: {one} and {other}."));
         }
     }
-    if let Some(best) = front(runs).last() {
+    if let Some(best) = recommended(runs) {
         let rivals = runs.iter().filter(|run| {
             run.setting != best.setting
                 && run.quality.wrong() <= best.quality.wrong()
-                && run.milliseconds.least <= best.milliseconds.greatest
+                && run.time().least <= best.time().greatest
         });
         let rivals: Vec<&str> = rivals.map(|run| run.setting.flags.as_str()).collect();
         if !rivals.is_empty() {
+            let (few, more) = rivals.split_at(rivals.len().min(MOST_RIVALS));
+            let more = if more.is_empty() { String::new() } else { format!("; and {} more", more.len()) };
             notes.push(format!(
-                "The machine was too noisy to say that {} is faster than {}.",
+                "The machine was too noisy to say that {} is faster than {}{more}.",
                 best.setting.flags,
-                rivals.join("; ")
+                few.join("; ")
             ));
         }
     }

@@ -4,12 +4,31 @@ use iso_grid::{Ray, Surface};
 use iso_render::Picture;
 use serde::Serialize;
 
-use super::answers;
-use crate::comparison::{Distance, Verdict, compare};
+use crate::comparison::{Answers, Distance, Verdict, compare};
 use crate::engine::engine;
 use crate::failure::Failure;
 use crate::flags::EngineName;
 use crate::measurement::Subject;
+
+/// Judges a picture pixel by pixel. Both pictures have the layers `color`, `normals` and `outcomes`.
+pub(crate) fn verdicts(
+    subject: &Subject,
+    proven: &Picture,
+    picture: &Picture,
+) -> Result<Vec<Verdict>, Failure> {
+    let size = subject.size;
+    let rays: Vec<Ray> = (0..size.height())
+        .flat_map(|row| (0..size.width()).map(move |column| (column, row)))
+        .map(|(column, row)| subject.camera.ray(column, row))
+        .collect();
+    let surface = Surface::new(engine(EngineName::Jit)?, subject.program.clone());
+    Ok(compare(&surface, &rays, &answers(proven), &answers(picture))?)
+}
+
+/// The answers that a picture with the layers `outcomes` and `normals` holds.
+fn answers(picture: &Picture) -> Answers {
+    Answers { outcomes: picture.outcomes.clone(), normals: picture.normals.clone() }
+}
 
 /// Pixels by verdict, and how far right ones are from what is proven.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -40,15 +59,8 @@ pub(crate) struct Quality {
 }
 
 impl Quality {
-    /// Judges a picture. Both have the layers `color`, `normals` and `outcomes`.
-    pub(crate) fn of(subject: &Subject, proven: &Picture, picture: &Picture) -> Result<Self, Failure> {
-        let size = subject.size;
-        let rays: Vec<Ray> = (0..size.height())
-            .flat_map(|row| (0..size.width()).map(move |column| (column, row)))
-            .map(|(column, row)| subject.camera.ray(column, row))
-            .collect();
-        let surface = Surface::new(engine(EngineName::Jit)?, subject.program.clone());
-        let verdicts = compare(&surface, &rays, &answers(proven), &answers(picture))?;
+    /// What `verdicts` come to, and how far the picture's colours are from the proven one's.
+    pub(crate) fn of(verdicts: &[Verdict], proven: &Picture, picture: &Picture) -> Self {
         let count = |wanted: fn(&Verdict) -> bool| verdicts.iter().filter(|verdict| wanted(verdict)).count();
         let deviation = |number: fn(&Distance) -> f64| {
             Deviation::of(verdicts.iter().filter_map(|verdict| match verdict {
@@ -57,7 +69,7 @@ impl Quality {
             }))
         };
         let (psnr, worst_channel) = difference(&proven.color, &picture.color);
-        Ok(Self {
+        Self {
             right: count(|verdict| matches!(verdict, Verdict::Found(_) | Verdict::Empty)),
             missed: count(|verdict| *verdict == Verdict::Missed),
             made_up: count(|verdict| *verdict == Verdict::False),
@@ -69,7 +81,7 @@ impl Quality {
             angle: deviation(|distance| distance.angle),
             psnr,
             worst_channel,
-        })
+        }
     }
 
     /// Pixels that are not as proven.

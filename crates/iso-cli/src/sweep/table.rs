@@ -8,47 +8,36 @@ use crate::table::{digits, write_row};
 
 /// Writes report.csv: a row for each run.
 pub(crate) fn write_table(report: &Report, writer: &mut dyn Write) -> io::Result<()> {
-    write_row(writer, COLUMNS)?;
-    report.runs.iter().try_for_each(|run| write_row(writer, row(run)))
+    write_row(writer, columns())?;
+    report
+        .formulas
+        .iter()
+        .flat_map(|section| section.runs.iter().map(move |run| row(&section.name, run)))
+        .try_for_each(|row| write_row(writer, row))
 }
 
-const COLUMNS: [&str; 43] = [
+const SETTING: [&str; 10] = [
+    "formula",
     "method",
     "engine",
     "grid",
     "refine",
     "step",
+    "root_finder",
+    "tolerance",
     "repetitions",
-    "median_ms",
-    "least_ms",
-    "greatest_ms",
-    "total_ms",
-    "compile_ms",
-    "preprocess_ms",
-    "trace_ms",
-    "shade_ms",
-    "other_ms",
-    "processor_ms",
     "peak_memory_mib",
-    "right",
-    "missed",
-    "false",
-    "undecided",
-    "open",
-    "distance_max",
-    "distance_mean",
-    "distance_p999",
-    "ulps_max",
-    "ulps_mean",
-    "ulps_p999",
-    "residual_max",
-    "residual_mean",
-    "residual_p999",
-    "angle_max",
-    "angle_mean",
-    "angle_p999",
+];
+const PHASES: [&str; 6] = ["total", "compile", "preprocess", "trace", "shade", "other"];
+const OF_A_PHASE: [&str; 5] = ["ms", "processor_ms", "median_ms", "least_ms", "greatest_ms"];
+const PIXELS: [&str; 5] = ["right", "missed", "false", "undecided", "open"];
+const DEVIATIONS: [&str; 4] = ["distance", "ulps", "residual", "angle"];
+const OF_A_DEVIATION: [&str; 3] = ["max", "mean", "p999"];
+const WORK: [&str; 13] = [
     "psnr_db",
     "worst_channel",
+    "rays",
+    "rays_in_region",
     "preprocess_evaluations",
     "trace_evaluations",
     "gradient_evaluations",
@@ -56,33 +45,45 @@ const COLUMNS: [&str; 43] = [
     "steps",
     "cells",
     "existence_cells",
+    "examined_cells",
+    "rescued_cells",
 ];
 
-fn row(run: &Run) -> Vec<String> {
-    let Run { setting, repetitions, milliseconds, phases, quality, counters } = run;
+fn columns() -> Vec<String> {
+    let pairs = |whats: &[&str], figures: &[&str]| -> Vec<String> {
+        whats.iter().flat_map(|what| figures.iter().map(move |figure| format!("{what}_{figure}"))).collect()
+    };
+    [
+        SETTING.map(str::to_owned).to_vec(),
+        pairs(&PHASES, &OF_A_PHASE),
+        PIXELS.map(str::to_owned).to_vec(),
+        pairs(&DEVIATIONS, &OF_A_DEVIATION),
+        WORK.map(str::to_owned).to_vec(),
+    ]
+    .concat()
+}
+
+fn row(formula: &str, run: &Run) -> Vec<String> {
+    let Run { setting, repetitions, milliseconds, peak_memory, quality, counters } = run;
     let count = |count: Option<u32>| count.map_or_else(String::new, |count| count.to_string());
     let number = |number: Option<f64>| number.map_or_else(String::new, digits);
     let mut row = vec![
+        formula.to_owned(),
         setting.name.to_owned(),
         setting.engine_name.to_owned(),
         count(setting.grid),
         count(setting.refine),
         number(setting.step),
+        setting.root_finder.unwrap_or_default().to_owned(),
+        digits(setting.tolerance),
         repetitions.to_string(),
+        number(*peak_memory),
     ];
-    let times = [
-        milliseconds.median,
-        milliseconds.least,
-        milliseconds.greatest,
-        phases.total,
-        phases.compile,
-        phases.preprocess,
-        phases.trace,
-        phases.shade,
-        phases.other,
-    ];
-    row.extend(times.map(digits));
-    row.extend([phases.processor, phases.peak_memory].map(number));
+    let phases = milliseconds.middle.each().into_iter().zip(milliseconds.middle_processor.each());
+    for ((wall, processor), spread) in phases.zip(milliseconds.spread.each()) {
+        row.extend([digits(*wall), number(*processor)]);
+        row.extend([spread.median, spread.least, spread.greatest].map(digits));
+    }
     let pixels = [quality.right, quality.missed, quality.made_up, quality.undecided, quality.open];
     row.extend(pixels.map(|pixels| pixels.to_string()));
     for Deviation { max, mean, p999 } in [quality.distance, quality.ulps, quality.residual, quality.angle] {
@@ -90,6 +91,8 @@ fn row(run: &Run) -> Vec<String> {
     }
     row.extend([number(quality.psnr), quality.worst_channel.to_string()]);
     let work = [
+        counters.rays,
+        counters.rays_in_region,
         counters.preprocess_evaluations,
         counters.trace_evaluations,
         counters.gradient_evaluations,
@@ -97,6 +100,8 @@ fn row(run: &Run) -> Vec<String> {
         counters.steps,
         counters.cells,
         counters.existence_cells,
+        counters.examined_cells,
+        counters.rescued_cells,
     ];
     row.extend(work.map(|count| count.to_string()));
     row
