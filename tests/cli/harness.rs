@@ -57,6 +57,15 @@ impl Case {
         started.end()
     }
 
+    /// Runs `iso` with arguments and a standard input that says nothing and has no end.
+    pub(crate) fn run_with_endless_input<A: AsRef<OsStr>>(&self, arguments: &[A]) -> Run {
+        let mut started = self.start(arguments);
+        let input = started.child.stdin.take();
+        let run = started.end();
+        drop(input);
+        run
+    }
+
     /// Starts `iso` with arguments.
     pub(crate) fn start<A: AsRef<OsStr>>(&self, arguments: &[A]) -> Started {
         let mut command = Command::new(env!("CARGO_BIN_EXE_iso"));

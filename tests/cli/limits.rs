@@ -66,6 +66,17 @@ fn a_time_limit_ends_preparations() {
     assert_eq!(case.names(), ["rays.csv"]);
 }
 
+/// Whatever preparations do, here wait for rays that never come: the limit does not wait for them.
+#[test]
+fn a_time_limit_does_not_wait_for_preparations() {
+    let case = Case::new();
+    let arguments = ["trace", "x", "--rays", "-", "-o", "out.csv", "--time-limit", "100ms"];
+    let report =
+        "error: stopped by the time limit of 100ms before anything was finished; nothing is written\n";
+    case.run_with_endless_input(&arguments).exits(3).prints("").reports(report);
+    assert!(case.names().is_empty());
+}
+
 #[test]
 fn rays_that_are_not_finished_say_so() {
     let case = Case::new();

@@ -1,15 +1,15 @@
 //! What ends work before it is done: Ctrl-C and time limits.
 
 use std::fmt;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-use iso_grid::{GridError, Stop};
+use iso_grid::Stop;
 
 use crate::failure::Failure;
 use crate::flags::LimitFlags;
-use crate::output;
+use crate::{output, report};
 
 /// The exit code after Ctrl-C, by the custom of shells: 128 and the signal's number.
 pub(crate) const INTERRUPTED: u8 = 130;
@@ -47,15 +47,27 @@ impl fmt::Display for Cause {
     }
 }
 
+/// How far work is.
+#[derive(Clone, Copy, Debug, Default)]
+enum Stage {
+    /// Formulas and tables are read, kernels compiled, methods prepared.
+    #[default]
+    Preparing,
+    /// Pixels or rays are finished one after the other.
+    Working,
+    /// It ended before it was done.
+    Ended(Cause),
+}
+
 /// The end of some work before it is done. Its copies are one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Interruption {
     stop: Stop,
-    cause: Arc<OnceLock<Cause>>,
+    stage: Arc<Mutex<Stage>>,
 }
 
 impl Interruption {
-    /// The time limit begins now.
+    /// The time limit begins now, with preparations.
     pub(crate) fn new(flags: &LimitFlags) -> Self {
         let interruption = Self::default();
         if flags.keep_partial {
@@ -76,26 +88,54 @@ impl Interruption {
         self.stop.clone()
     }
 
-    /// Ends the work; false when it was ended before.
-    fn end(&self, cause: Cause) -> bool {
-        let is_first = self.cause.set(cause).is_ok();
-        self.stop.request();
-        is_first
+    /// Preparations are done: from now on there may be something finished that is worth keeping.
+    pub(crate) fn begin_work(&self) {
+        *self.stage() = Stage::Working;
     }
 
-    /// An error when some of `all` pixels or rays, as `things` calls them, are unfinished.
-    pub(crate) fn check(&self, unfinished: u64, all: u64, things: &'static str) -> Result<(), Failure> {
-        match self.cause.get() {
-            Some(&cause) if unfinished > 0 => Err(Failure::Stopped { cause, unfinished, all, things }),
+    /// Ends the work; false when it was ended before. Preparations have nothing to keep, and may be deep in a compiler or wait
+    /// for input: during them, this ends the program.
+    fn end(&self, cause: Cause) -> bool {
+        let mut stage = self.stage();
+        match *stage {
+            Stage::Preparing => {
+                let failure = Failure::StoppedEarly { cause };
+                report::print(&failure);
+                output::exit_between_files(failure.exit_code());
+            }
+            Stage::Working => {
+                *stage = Stage::Ended(cause);
+                self.stop.request();
+                true
+            }
+            Stage::Ended(_) => false,
+        }
+    }
+
+    fn stage(&self) -> MutexGuard<'_, Stage> {
+        self.stage.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn cause(&self) -> Option<Cause> {
+        match *self.stage() {
+            Stage::Ended(cause) => Some(cause),
+            Stage::Preparing | Stage::Working => None,
+        }
+    }
+
+    /// An error when all pixels or rays are unfinished, so that there is nothing to write.
+    pub(crate) fn check_begun(&self, unfinished: u64, all: u64) -> Result<(), Failure> {
+        match self.cause() {
+            Some(cause) if unfinished > 0 && unfinished == all => Err(Failure::StoppedEarly { cause }),
             _ => Ok(()),
         }
     }
 
-    /// Why a method could not be prepared.
-    pub(crate) fn explain(&self, error: GridError) -> Failure {
-        match (&error, self.cause.get()) {
-            (GridError::Stopped, Some(&cause)) => Failure::StoppedEarly { cause },
-            _ => error.into(),
+    /// An error when some of `all` pixels or rays, as `things` calls them, are unfinished.
+    pub(crate) fn check_done(&self, unfinished: u64, all: u64, things: &'static str) -> Result<(), Failure> {
+        match self.cause() {
+            Some(cause) if unfinished > 0 => Err(Failure::Stopped { cause, unfinished, all, things }),
+            _ => Ok(()),
         }
     }
 }

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::sync::Arc;
 
 use iso_expr::{Engine, Program};
-use iso_grid::{Counters, GridError, Kernel, Region, Surface};
+use iso_grid::{Counters, Kernel, Region, Surface};
 use iso_render::{Pass, Picture, Plan, Scene, Shading, Size, Smoothing, render};
 use rayon::ThreadPool;
 
@@ -35,7 +35,7 @@ pub(crate) fn run(flags: RenderFlags) -> Result<(), Failure> {
         }
         Speech::Nothing => {}
     }
-    request.interruption.check(summary.pixels.unfinished, request.drawn.pixels() as u64, "pixels")
+    request.interruption.check_done(summary.pixels.unfinished, request.drawn.pixels() as u64, "pixels")
 }
 
 /// What is to be drawn, how, and where it goes: all that flags and files say, checked.
@@ -146,19 +146,17 @@ impl Request {
         phases: &mut Phases,
     ) -> Result<(Picture, Counters), Failure> {
         let camera = camera(&self.camera, &region, self.drawn)?;
-        let tracer = add_to(&mut phases.preprocess, || self.plan.tracer(surface, region))
-            .map_err(|error| self.interruption.explain(error))?;
+        let tracer = add_to(&mut phases.preprocess, || self.plan.tracer(surface, region))?;
         let shading = Shading::new(&camera, self.shows_status);
         let scene =
             Scene { plan: &self.plan, surface, tracer: tracer.as_ref(), camera: &camera, shading: &shading };
         let progress = Progress::new(self.speech == Speech::Line);
         let report = |done, all| progress.report(done, all);
+        self.interruption.begin_work();
         let picture = render(&scene, self.drawn, &report);
         progress.finish();
         let mut picture = picture?;
-        if picture.counts.unfinished == self.drawn.pixels() as u64 {
-            return Err(self.interruption.explain(GridError::Stopped));
-        }
+        self.interruption.check_begun(picture.counts.unfinished, self.drawn.pixels() as u64)?;
         if self.plan.runs(Pass::Smooth) {
             add_to(&mut phases.shade, || self.smoothing.finish(&mut picture));
         }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use iso_expr::CompileError;
-use iso_grid::{GridError, Outcome, Ray, Surface, Tracer, Workspace, normals};
+use iso_grid::{Outcome, Ray, Surface, Tracer, Workspace, normals};
 use iso_render::Status;
 use rayon::prelude::*;
 
@@ -33,20 +33,21 @@ pub(crate) fn run(flags: TraceFlags) -> Result<(), Failure> {
     let rays = read_rays(&flags.tables.rays)?;
     let plan = plan_of_rays(method, &program, flags.method.region.region.is_some());
     let surface = Surface::new(engine(flags.engine.engine)?, program).stopped_by(interruption.stop());
+    plan.compile(&surface)?;
     let followed = threads(&flags.threads)?.install(|| {
         let region = region(flags.method.region.region, &surface)?;
-        let tracer = plan.tracer(&surface, region).map_err(|error| interruption.explain(error))?;
+        let tracer = plan.tracer(&surface, region)?;
+        interruption.begin_work();
         Ok::<_, Failure>(follow(&surface, tracer.as_ref(), &rays)?)
     })?;
-    let unfinished = followed.iter().filter(|end| end.is_none()).count();
-    if unfinished > 0 && unfinished == rays.len() {
-        return Err(interruption.explain(GridError::Stopped));
-    }
+    let unfinished = followed.iter().filter(|end| end.is_none()).count() as u64;
+    let all = rays.len() as u64;
+    interruption.check_begun(unfinished, all)?;
     destination.write(|writer| {
         write_row(writer, ["status", "t", "t_lo", "t_hi", "x", "y", "z", "nx", "ny", "nz"])?;
         rays.iter().zip(&followed).try_for_each(|(ray, end)| write_end(writer, ray, end.as_ref()))
     })?;
-    interruption.check(unfinished as u64, rays.len() as u64, "rays")
+    interruption.check_done(unfinished, all, "rays")
 }
 
 fn read_rays(path: &Path) -> Result<Vec<Ray>, TableError> {
