@@ -183,6 +183,26 @@ fn a_root_on_a_face_of_the_region_is_undecided() {
     );
 }
 
+/// To see whether it is simple, a root at the origin is looked at from both sides; what is said of it lies on the ray.
+#[test]
+fn a_root_where_the_ray_begins_lies_on_the_ray() {
+    for formula in
+        ["x - 0.5", "(x - 0.5)^2", "(x - 0.5)^3", "x^2 - 0.25", "max(x - 0.5, 0)", "1e-320*(x - 0.5)"]
+    {
+        for origin in [DVec3::new(0.5, 0.1, 0.2), DVec3::new(0.5, 0.0, 0.0)] {
+            for direction in [X, -X, DVec3::new(1e-300, 1.0, 0.0), DVec3::new(-3.0, 1e-9, 0.2)] {
+                let outcome = end(formula, 1.5, origin, direction);
+                let start = match outcome {
+                    Outcome::Hit(hit) | Outcome::Touch(hit) => hit.bracket.start,
+                    Outcome::Undecided(span) => span.start,
+                    Outcome::Miss => panic!("{formula} has a root at 0 along {direction}"),
+                };
+                assert!(start == 0.0, "{formula} along {direction}: {outcome:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_root_outside_the_region_is_none() {
     assert_eq!(end("x - 1.6", 1.5, DVec3::new(-3.0, 0.1, 0.2), X), Outcome::Miss);

@@ -193,7 +193,8 @@ impl Search<'_> {
             return Some(Outcome::Undecided(stretch));
         }
         let t = match valley {
-            Some(valley) => self.line.extremum(valley),
+            // A valley that was widened may have its bottom before the ray begins.
+            Some(valley) => self.line.extremum(valley).clamp(self.clip.outer.start, self.clip.outer.end),
             None => stretch.start + 0.5 * (stretch.end - stretch.start),
         };
         let bracket = Span { start: stretch.start.min(t), end: stretch.end.max(t) };
@@ -208,7 +209,8 @@ impl Search<'_> {
             return None;
         }
         if bracket.start < inner.start || bracket.end > inner.end {
-            return Some(Outcome::Undecided(bracket));
+            let inside = Span { start: bracket.start.max(outer.start), end: bracket.end.min(outer.end) };
+            return Some(Outcome::Undecided(inside));
         }
         let t = bracket.start + 0.5 * (bracket.end - bracket.start);
         Some(Outcome::Hit(Hit { t, bracket }))
