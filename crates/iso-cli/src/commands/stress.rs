@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::flags::StressFlags;
 use crate::output::{OutputFile, to_standard_output};
 use crate::progress::Progress;
-use crate::stress::{Case, Measured, cases, measure, write_page, write_table};
+use crate::stress::{Case, Measured, cases, measure, write_document, write_page, write_table};
 
 /// Runs the suite, or one case of it.
 pub(crate) fn run(flags: StressFlags) -> Result<(), Failure> {
@@ -18,6 +18,7 @@ pub(crate) fn run(flags: StressFlags) -> Result<(), Failure> {
     let json_replaces_table = flags.json.as_deref() == Some(Path::new("-"));
     let json = flags.json.as_deref().filter(|_| !json_replaces_table).map(to_file).transpose()?;
     let html = flags.html.as_deref().map(to_file).transpose()?;
+    let markdown = flags.markdown.as_deref().map(to_file).transpose()?;
     let cases = chosen(flags.case.as_deref())?;
     let (progress, done) = (Progress::new(true), AtomicU64::new(0));
     let measured: Result<Vec<Measured>, Failure> = threads(&flags.threads)?.install(|| {
@@ -37,6 +38,9 @@ pub(crate) fn run(flags: StressFlags) -> Result<(), Failure> {
     }
     if let Some(file) = html {
         file.write(|mut writer| write_page(&mut writer, &measured))?;
+    }
+    if let Some(file) = markdown {
+        file.write(|mut writer| write_document(&mut writer, &measured, flags.size))?;
     }
     to_standard_output(|writer| match json_replaces_table {
         true => {

@@ -32,6 +32,10 @@ pub(crate) struct StressFlags {
     #[arg(long, value_name = "FILE.html")]
     pub(crate) html: Option<PathBuf>,
 
+    /// Write what is promised, what is left open and why, and a table of all cases, as `docs/stability.md` is written
+    #[arg(long, value_name = "FILE.md")]
+    pub(crate) markdown: Option<PathBuf>,
+
     #[command(flatten)]
     pub(crate) threads: ThreadsFlag,
 }
@@ -41,5 +45,6 @@ Examples:
   iso stress
   iso stress --case shell_1e-6 --size 256x256 --html shell.html
   iso stress --json - --size 16x16
+  iso stress --markdown docs/stability.md
 
 Exit codes: 0 every promise held, 1 one did not, 2 bad usage.";

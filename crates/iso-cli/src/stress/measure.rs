@@ -156,6 +156,26 @@ fn trace(tracer: &dyn Tracer, rays: &[Ray], size: Size) -> Vec<Outcome> {
 }
 
 impl Measured {
+    /// The runs on native code, the certified method first.
+    pub(crate) fn native(&self) -> &[Run] {
+        &self.runs[self.runs.len() / 2..]
+    }
+
+    /// The certified method on native code.
+    pub(crate) fn certified(&self) -> &Run {
+        &self.native()[0]
+    }
+
+    /// The methods that sample, on native code: `grid`, `octree`, `direct`.
+    pub(crate) fn sampled(&self) -> &[Run] {
+        &self.native()[1..]
+    }
+
+    /// The largest of an error of the methods that sample.
+    pub(crate) fn worst_sampled(&self, error: fn(&Run) -> f64) -> f64 {
+        self.sampled().iter().map(error).fold(0.0, f64::max)
+    }
+
     /// Traces the case with every method on one engine.
     fn trace(
         &mut self,
@@ -246,6 +266,11 @@ impl Measured {
 }
 
 impl Run {
+    /// Rays that end without a proof of a crossing or of none.
+    pub(crate) fn open(&self) -> u64 {
+        self.ends.touch + self.ends.undecided
+    }
+
     fn of(
         engine: &'static str,
         method: &'static str,

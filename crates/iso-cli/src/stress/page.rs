@@ -55,7 +55,7 @@ fn write_case(writer: &mut dyn Write, case: &Measured) -> io::Result<()> {
             picture,
             run.wrong,
             run.missed,
-            run.ends.touch + run.ends.undecided,
+            run.open(),
             run.milliseconds,
         )?;
     }

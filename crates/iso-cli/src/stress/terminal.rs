@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::measure::{Measured, Run};
+use super::measure::Measured;
 
 /// Writes a row for each case, grouped by family, the worst first: broken promises, then rays left open, then errors of
 /// the methods that sample. On the left the certified method on native code; on the right the methods that sample, `grid`,
@@ -43,41 +43,26 @@ pub(crate) fn write_table(writer: &mut dyn Write, measured: &[Measured]) -> io::
 }
 
 fn badness(case: &Measured) -> (usize, u64, u64) {
-    let open = case.certified().ends.touch + case.certified().ends.undecided;
-    (case.broken.len(), open, case.native().iter().map(|run| run.wrong + run.missed).sum())
+    (case.broken.len(), case.certified().open(), case.native().iter().map(|run| run.wrong + run.missed).sum())
 }
 
 fn write_case(writer: &mut dyn Write, case: &Measured) -> io::Result<()> {
-    let [certified, grid, octree, direct] = case.native() else {
-        unreachable!("there are four methods");
-    };
-    let sampled = [grid, octree, direct];
-    let worst = |error: fn(&Run) -> f64| sampled.map(error).into_iter().fold(0.0, f64::max);
-    let faults = sampled.map(|run| format!("{}/{}", run.wrong, run.missed)).join(" ");
+    let certified = case.certified();
+    let faults: Vec<String> =
+        case.sampled().iter().map(|run| format!("{}/{}", run.wrong, run.missed)).collect();
     writeln!(
         writer,
-        "  {:<22} {:>6} {:>6} {:>6} {:>6} {:>8.1} | {:>9.1e} {:>9.1e} {:>9.1e} {faults:>22}",
+        "  {:<22} {:>6} {:>6} {:>6} {:>6} {:>8.1} | {:>9.1e} {:>9.1e} {:>9.1e} {:>22}",
         case.name,
         certified.ends.hit,
         certified.ends.touch,
         certified.ends.miss,
         certified.ends.undecided,
         certified.milliseconds,
-        worst(|run| run.distance),
-        worst(|run| run.residual),
-        worst(|run| run.angle),
+        case.worst_sampled(|run| run.distance),
+        case.worst_sampled(|run| run.residual),
+        case.worst_sampled(|run| run.angle),
+        faults.join(" "),
     )?;
     case.broken.iter().try_for_each(|problem| writeln!(writer, "    broken: {problem}"))
-}
-
-impl Measured {
-    /// The runs on native code, the certified method first.
-    pub(crate) fn native(&self) -> &[Run] {
-        &self.runs[self.runs.len() / 2..]
-    }
-
-    /// The certified method on native code.
-    pub(crate) fn certified(&self) -> &Run {
-        &self.native()[0]
-    }
 }
