@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use iso_expr::random::Random;
 
-/// For a tile of 36 rays, traced by every method: a second of work, on a machine that does ten other things.
+/// For a tile of up to 36 rays, traced by two methods: a second of work, on a machine that does ten other things.
 const LIMIT: Duration = Duration::from_secs(10);
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {

@@ -3,9 +3,8 @@
 //! The first line names the columns, whose order is free, and every other line is a row. Columns that nobody asks for are
 //! ignored, and so are empty lines and lines that begin with `#`.
 
-#[cfg(any(test, fuzzing))]
-#[path = "table/property.rs"]
-pub(crate) mod property;
+#[cfg(test)]
+mod property;
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
@@ -81,7 +80,8 @@ pub(crate) fn read<const N: usize>(path: &Path, names: [&str; N]) -> Result<Tabl
     }
 }
 
-fn read_from<const N: usize>(
+/// Reads the columns called `names` of a text; `path` is what errors call it.
+pub(crate) fn read_from<const N: usize>(
     source: impl BufRead,
     path: &Path,
     names: [&str; N],

@@ -10,7 +10,7 @@ use values::{bits, points, values_agree};
 
 #[test]
 fn every_operation_has_its_value() {
-    let mut random = Random::new(1);
+    let (jit, mut random) = (Jit::new().unwrap(), Random::new(1));
     for operation in Operation::all() {
         let mut program = Program::new();
         let variables = Axis::ALL.map(|axis| program.variable(axis));
@@ -26,23 +26,23 @@ fn every_operation_has_its_value() {
         // Equal operands, and zeros of both signs.
         points.extend((0..20).map(|_| [random.double(); 3]));
         points.extend([[0.0, -0.0, 1.0], [-0.0, 0.0, 1.0], [f64::NAN, 1.0, 2.0], [1.0, f64::NAN, 2.0]]);
-        values_agree(&program, &points);
+        values_agree(&jit, &program, &points);
     }
 }
 
 #[test]
 fn variables_constants_and_repeated_outputs_are_outputs_too() {
-    let mut program = Program::new();
+    let (jit, mut program) = (Jit::new().unwrap(), Program::new());
     let (z, zero) = (program.variable(Axis::Z), program.literal(-0.0));
     program.set_outputs(vec![z, zero, z]);
-    values_agree(&program, &points(&mut Random::new(2), 10));
+    values_agree(&jit, &program, &points(&mut Random::new(2), 10));
     program.set_outputs(Vec::new());
-    values_agree(&program, &points(&mut Random::new(2), 10));
+    values_agree(&jit, &program, &points(&mut Random::new(2), 10));
 }
 
 #[test]
 fn live_values_survive_calls() {
-    let mut program = Program::new();
+    let (jit, mut program) = (Jit::new().unwrap(), Program::new());
     let variables = Axis::ALL.map(|axis| program.variable(axis));
     let mut values = variables.to_vec();
     for place in 0..60 {
@@ -56,12 +56,12 @@ fn live_values_survive_calls() {
         sum = program.apply(Operation::Add, &[quotient, value]);
     }
     program.set_outputs(vec![sum, values[9]]);
-    values_agree(&program, &points(&mut Random::new(3), 100));
+    values_agree(&jit, &program, &points(&mut Random::new(3), 100));
 }
 
 #[test]
 fn batches_of_any_length_agree() {
-    let points = points(&mut Random::new(4), 40);
+    let (jit, points) = (Jit::new().unwrap(), points(&mut Random::new(4), 40));
     for operation in [Operation::Divide, Operation::Atan2] {
         let mut program = Program::new();
         let [x, y, z] = Axis::ALL.map(|axis| program.variable(axis));
@@ -69,29 +69,29 @@ fn batches_of_any_length_agree() {
         let quotient = program.apply(operation, &[product, y]);
         program.set_outputs(vec![quotient, product]);
         for length in 0..=points.len() {
-            values_agree(&program, &points[..length]);
+            values_agree(&jit, &program, &points[..length]);
         }
     }
 }
 
 #[test]
 fn random_programs_agree() {
-    let mut random = Random::new(5);
+    let (jit, mut random) = (Jit::new().unwrap(), Random::new(5));
     for _ in 0..400 {
         let operations = 1 + random.below(60);
         let program = random.program(operations);
         let points = points(&mut random, 25);
-        values_agree(&program, &points);
-        values_agree(&program.with_gradient(), &points);
+        values_agree(&jit, &program, &points);
+        values_agree(&jit, &program.with_gradient(), &points);
     }
 }
 
 #[test]
 fn programs_that_spill_agree() {
-    let mut random = Random::new(6);
+    let (jit, mut random) = (Jit::new().unwrap(), Random::new(6));
     for width in [20, 100, 1500] {
         let program = random.wide_program(width);
-        values_agree(&program, &points(&mut random, 30));
+        values_agree(&jit, &program, &points(&mut random, 30));
     }
 }
 

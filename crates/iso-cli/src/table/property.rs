@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Table, digits, read_from, write_row};
+use crate::table::{Table, digits, read_from, write_row};
 
 const NAMES: [&str; 2] = ["x", "y"];
 

@@ -11,8 +11,8 @@ pub(crate) fn bits(values: &[f64]) -> Vec<u64> {
 }
 
 /// Native code gives the interpreter's values: the point kernel at each of `points`, the batch kernel at all of them at once.
-pub(crate) fn values_agree(program: &Program, points: &[[f64; 3]]) {
-    let (jit, interpreter) = (Jit::new().unwrap(), Interpreter);
+pub(crate) fn values_agree(jit: &Jit, program: &Program, points: &[[f64; 3]]) {
+    let interpreter = Interpreter;
     let mut scratch = Scratch::default();
     let outputs = program.outputs().len();
 
