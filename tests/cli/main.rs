@@ -2,6 +2,7 @@
 
 mod harness;
 
+mod engines;
 mod eval;
 mod explain;
 mod formulas;

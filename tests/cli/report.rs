@@ -21,7 +21,7 @@ fn report(case: &Case, more: &[&str]) -> Run {
         "--tolerances",
         "0",
     ]);
-    arguments.extend(["--runs", "2", "-o", "out"]);
+    arguments.extend(["--runs", "2", "--sizes", "3,40", "-o", "out"]);
     arguments.extend(more);
     case.run(&arguments)
 }
@@ -210,4 +210,19 @@ fn settings_out_of_range_are_known_before_anything_is_measured() {
         case.run(&["report", HIDDEN_BALL, flag, value]).exits(2).mentions(flag);
         assert!(case.names().is_empty());
     }
+}
+
+#[test]
+fn growing_formulas_are_measured_by_both_engines() {
+    let json = report(&Case::new(), &["--json"]).exits(0).json();
+    let engines = json["engines"].as_array().unwrap();
+    assert_eq!(engines[0]["operations"], 3);
+    for evaluation in engines {
+        for kind in ["point", "batch", "compile"] {
+            let times = evaluation[kind].as_array().unwrap();
+            assert!(times.len() == 2 && times.iter().all(|time| time["least"].as_f64().unwrap() > 0.0));
+        }
+    }
+    let one_engine = report(&Case::new(), &["--engines", "jit", "--json"]).exits(0).json();
+    assert_eq!(one_engine["engines"], Value::Array(Vec::new()));
 }

@@ -4,8 +4,6 @@ use std::fmt::Write;
 
 use crate::html::escaped;
 
-const WIDTH: f64 = 760.0;
-const HEIGHT: f64 = 440.0;
 const LEFT: f64 = 84.0;
 const RIGHT: f64 = 24.0;
 const TOP: f64 = 44.0;
@@ -14,6 +12,25 @@ const BOTTOM: f64 = 64.0;
 const ZERO_ROOM: f64 = 36.0;
 /// About the width of a letter.
 const LETTER: f64 = 6.4;
+
+/// How wide and high a chart is; letters have one size.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Proportions {
+    /// As wide as the page.
+    #[default]
+    Large,
+    /// One of several side by side.
+    Small,
+}
+
+impl Proportions {
+    fn size(self) -> [f64; 2] {
+        match self {
+            Self::Large => [760.0, 440.0],
+            Self::Small => [480.0, 320.0],
+        }
+    }
+}
 
 /// A chart of values that are positive or zero.
 #[derive(Default)]
@@ -28,6 +45,7 @@ pub(crate) struct Chart {
     pub(crate) legend: Vec<(String, &'static str)>,
     /// What filled and hollow marks are.
     pub(crate) hint: &'static str,
+    pub(crate) proportions: Proportions,
 }
 
 /// A measured value.
@@ -52,18 +70,19 @@ pub(crate) struct Line {
 impl Chart {
     /// The whole chart as one SVG element.
     pub(crate) fn svg(&self) -> String {
+        let [width, height] = self.proportions.size();
         let place = Place {
             x: Axis::over(
                 self.marks.iter().flat_map(|mark| mark.spread.unwrap_or([mark.x; 2])),
                 LEFT,
-                WIDTH - RIGHT,
+                width - RIGHT,
             ),
-            y: Axis::over(self.marks.iter().map(|mark| mark.y), HEIGHT - BOTTOM, TOP),
+            y: Axis::over(self.marks.iter().map(|mark| mark.y), height - BOTTOM, TOP),
         };
         let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" \
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" role=\"img\" \
              font-family=\"system-ui, sans-serif\" font-size=\"12\" fill=\"#333\">\n<title>{title}</title>\n\
-             <rect width=\"{WIDTH}\" height=\"{HEIGHT}\" fill=\"#fff\"/>\n",
+             <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n",
             title = escaped(&self.title)
         );
         self.axes(&place, &mut svg);
@@ -79,7 +98,8 @@ impl Chart {
     }
 
     fn axes(&self, place: &Place, svg: &mut String) {
-        let (right, bottom) = (WIDTH - RIGHT, HEIGHT - BOTTOM);
+        let [width, height] = self.proportions.size();
+        let (right, bottom) = (width - RIGHT, height - BOTTOM);
         let x_ticks = if self.x_ticks.is_empty() { place.x.ticks() } else { self.x_ticks.clone() };
         for tick in x_ticks {
             let x = place.x.place(tick);
@@ -107,13 +127,14 @@ impl Chart {
              <text x=\"{center}\" y=\"{below}\" text-anchor=\"middle\">{x_name}</text>\n\
              <text transform=\"translate(20 {middle}) rotate(-90)\" text-anchor=\"middle\">{y_name}</text>",
             center = 0.5 * (LEFT + right),
-            below = HEIGHT - 20.0,
+            below = height - 20.0,
             x_name = escaped(self.x_name),
             y_name = escaped(self.y_name)
         );
     }
 
     fn legend(&self, svg: &mut String) {
+        let [width, _] = self.proportions.size();
         let mut x = LEFT;
         for (name, color) in &self.legend {
             svg.push_str(&format!(
@@ -126,7 +147,7 @@ impl Chart {
         }
         svg.push_str(&format!(
             "<text x=\"{}\" y=\"26\" text-anchor=\"end\" fill=\"#666\">{}</text>\n",
-            WIDTH - RIGHT,
+            width - RIGHT,
             escaped(self.hint)
         ));
     }

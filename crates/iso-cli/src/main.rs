@@ -9,6 +9,7 @@ mod clock;
 mod commands;
 mod comparison;
 mod engine;
+mod evaluation;
 mod failure;
 mod flags;
 mod formula;
@@ -24,6 +25,7 @@ mod plan;
 mod progress;
 mod report;
 mod rounding;
+mod scaling;
 mod stress;
 mod summary;
 mod sweep;
@@ -56,6 +58,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Trace(flags) => commands::trace::run(flags),
         Command::Explain(flags) => commands::explain::run(*flags),
         Command::Bench(flags) => commands::bench::run(flags),
+        Command::Engines(flags) => commands::engines::run(flags),
         Command::Report(flags) => commands::report::run(*flags),
         Command::Stress(flags) => commands::stress::run(flags),
         Command::Completions { shell } => commands::completions::run(shell),

@@ -1,30 +1,22 @@
 //! `iso bench`: the interpreter against native code.
 
-use std::hint::black_box;
 use std::io::{self, Write};
 use std::sync::Arc;
-use std::time::Duration;
 
-use glam::DVec3;
-use iso_expr::engine::Points;
-use iso_expr::{CompileError, Engine, Interpreter, Scratch};
-use iso_grid::{Method, Region, Surface};
+use iso_expr::{Engine, Interpreter};
+use iso_grid::{Method, Surface};
 use iso_render::{Camera, Projection, Size, View};
 use serde::Serialize;
 
-use crate::clock::{Deadline, Spread, timed};
+use crate::clock::{Deadline, Spread};
 use crate::engine::{native_code, threads};
+use crate::evaluation::SpreadPoints;
 use crate::failure::Failure;
 use crate::flags::BenchFlags;
 use crate::formula::{minus_level, understand};
 use crate::measurement::{Subject, in_turns};
 use crate::method::{method, region};
 use crate::output::to_standard_output;
-
-/// Points at which the formula is evaluated.
-const POINTS: usize = 4096;
-/// Evaluations are repeated until they take about this long.
-const LONG_ENOUGH: Duration = Duration::from_millis(5);
 
 /// Measures both engines.
 pub(crate) fn run(flags: BenchFlags) -> Result<(), Failure> {
@@ -36,7 +28,7 @@ pub(crate) fn run(flags: BenchFlags) -> Result<(), Failure> {
     let bench = Bench {
         subject: Subject { program, region, projection: Projection::DEFAULT, camera, size },
         method: method(&flags.method)?,
-        points: spread_points(&region),
+        points: SpreadPoints::over(&region),
     };
     let runs = flags.measurement.runs.get() as usize;
     let report = threads(&flags.threads)?.install(|| bench.report(runs))?;
@@ -53,7 +45,7 @@ pub(crate) fn run(flags: BenchFlags) -> Result<(), Failure> {
 struct Bench {
     subject: Subject,
     method: Method,
-    points: [Vec<f64>; 3],
+    points: SpreadPoints,
 }
 
 /// One round of measurements of an engine.
@@ -93,8 +85,9 @@ impl Bench {
     }
 
     fn round(&self, engine: &Arc<dyn Engine>) -> Result<Round, Failure> {
-        let point_nanoseconds = self.point_by_point(engine.as_ref())?;
-        let batch_nanoseconds = self.in_batches(engine.as_ref())?;
+        let program = &self.subject.program;
+        let point_nanoseconds = self.points.one_by_one(&*engine.point(program)?);
+        let batch_nanoseconds = self.points.together(&*engine.batch(program)?);
         let picture = self.subject.measure(engine, &self.method)?;
         Ok(Round {
             point_nanoseconds,
@@ -103,48 +96,6 @@ impl Bench {
             picture_milliseconds: picture.total.wall - picture.phases.compile.wall,
         })
     }
-
-    /// Nanoseconds of one evaluation when each point is asked for by itself.
-    fn point_by_point(&self, engine: &dyn Engine) -> Result<f64, CompileError> {
-        let kernel = engine.point(&self.subject.program)?;
-        let (mut scratch, mut value) = (Scratch::default(), [0.0]);
-        let [x, y, z] = &self.points;
-        Ok(nanoseconds_each(|| {
-            for ((&x, &y), &z) in x.iter().zip(y).zip(z) {
-                kernel.evaluate(&mut scratch, x, y, z, &mut value);
-                black_box(&mut value);
-            }
-        }))
-    }
-
-    /// Nanoseconds of one evaluation when all points are asked for together.
-    fn in_batches(&self, engine: &dyn Engine) -> Result<f64, CompileError> {
-        let kernel = engine.batch(&self.subject.program)?;
-        let (mut scratch, mut values) = (Scratch::default(), vec![0.0; POINTS]);
-        let [x, y, z] = &self.points;
-        Ok(nanoseconds_each(|| {
-            kernel.evaluate(&mut scratch, Points { x, y, z }, &mut values);
-            black_box(&mut values);
-        }))
-    }
-}
-
-/// Nanoseconds of one of the `POINTS` evaluations that `work` does.
-fn nanoseconds_each(mut work: impl FnMut()) -> f64 {
-    let ((), once) = timed(&mut work);
-    let repeats = (LONG_ENOUGH.as_secs_f64() / once.as_secs_f64().max(1e-9)).clamp(1.0, 1e4) as u32;
-    let ((), all) = timed(|| (0..repeats).for_each(|_| work()));
-    1e9 * all.as_secs_f64() / (f64::from(repeats) * POINTS as f64)
-}
-
-/// Points spread evenly over the region: the additive recurrence of Roberts (2018), whose steps are powers of the root
-/// of x⁴ = x + 1.
-fn spread_points(region: &Region) -> [Vec<f64>; 3] {
-    const ROOT: f64 = 1.220_744_084_605_759_5;
-    let steps = DVec3::new(ROOT.powi(-1), ROOT.powi(-2), ROOT.powi(-3));
-    let point = |index: usize| region.min() + region.extent() * (0.5 + index as f64 * steps).fract();
-    let points: Vec<DVec3> = (0..POINTS).map(point).collect();
-    [0, 1, 2].map(|axis| points.iter().map(|point| point[axis]).collect())
 }
 
 /// What was measured of an engine.

@@ -2,6 +2,7 @@
 
 pub(crate) mod bench;
 pub(crate) mod completions;
+pub(crate) mod engines;
 pub(crate) mod eval;
 pub(crate) mod explain;
 pub(crate) mod render;

@@ -15,12 +15,13 @@ use crate::camera::{camera, projection};
 use crate::clock::Deadline;
 use crate::engine::threads;
 use crate::failure::Failure;
-use crate::flags::{AxesFlags, ReportFlags, SuiteName};
+use crate::flags::{AxesFlags, EngineName, ReportFlags, SuiteName};
 use crate::formula::{Source, minus_level};
 use crate::measurement::Subject;
 use crate::method::region;
 use crate::output::{OutputFile, to_standard_output};
 use crate::progress::Progress;
+use crate::scaling::{Family, Formula};
 use crate::sweep::{Axes, Case, Report, Sweep, plots, scenes, write_page, write_table};
 
 /// Measures all settings and writes the report.
@@ -29,6 +30,7 @@ pub(crate) fn run(flags: ReportFlags) -> Result<(), Failure> {
         deadline: Deadline::after(flags.sweep.budget),
         cases: cases(&flags)?,
         settings: axes(&flags.axes).settings(),
+        growing: growing(&flags.axes),
         rounds: flags.sweep.runs.get() as usize,
     };
     let mut files = ReportFiles::new(&flags.sweep.output)?;
@@ -95,6 +97,13 @@ fn subject(flags: &ReportFlags, program: Program, region: Region) -> Result<Subj
         program,
         region,
     })
+}
+
+/// The formulas on which the engines are compared, if both are.
+fn growing(flags: &AxesFlags) -> Vec<Formula> {
+    let has_both = [EngineName::Jit, EngineName::Interp].iter().all(|name| flags.engines.contains(name));
+    let sizes = flags.sizes.iter().filter(|_| has_both);
+    sizes.map(|&size| Family::Blobs.formula(size as usize)).collect()
 }
 
 fn axes(flags: &AxesFlags) -> Axes {

@@ -3,6 +3,7 @@
 
 mod bench;
 mod camera;
+mod engines;
 mod eval;
 mod explain;
 mod formula;
@@ -15,6 +16,7 @@ mod trace;
 
 pub(crate) use bench::BenchFlags;
 pub(crate) use camera::CameraFlags;
+pub(crate) use engines::EnginesFlags;
 pub(crate) use eval::EvalFlags;
 #[cfg(feature = "jit")]
 pub(crate) use explain::KernelName;
@@ -56,6 +58,8 @@ pub(crate) enum Command {
     Explain(Box<ExplainFlags>),
     /// Measure the interpreter against native code
     Bench(BenchFlags),
+    /// Measure the interpreter against native code as formulas and pictures grow
+    Engines(EnginesFlags),
     /// Measure what error each method and setting buys for what time
     Report(Box<ReportFlags>),
     /// Run the suite of hard cases and hold every method against what is proven

@@ -102,6 +102,12 @@ pub(crate) struct AxesFlags {
     #[arg(default_values = ["0", "1e-6"])]
     pub(crate) tolerances: Vec<f64>,
 
+    /// About how many operations the formulas have on which the engines are compared, beside the given one
+    #[arg(long, value_name = "N,...", value_delimiter = ',')]
+    #[arg(default_values_t = [3, 10, 30, 100, 300, 1000, 3000, 10_000])]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=50_000))]
+    pub(crate) sizes: Vec<u32>,
+
     /// Measure all combinations
     ///
     /// Without it, grids are combined with everything, and of engines, parts, steps and ways to find roots one at a time leaves the first

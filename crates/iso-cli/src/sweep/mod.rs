@@ -17,6 +17,7 @@ use crate::clock::Deadline;
 use crate::failure::Failure;
 use crate::machine::Machine;
 use crate::measurement::Subject;
+use crate::scaling::{Evaluation, Formula, measure_evaluations};
 
 pub(crate) use axes::{Axes, Setting};
 pub(crate) use page::write_page;
@@ -55,6 +56,8 @@ pub(crate) struct Report {
     pub(crate) notes: Vec<String>,
     /// What was measured of each formula.
     pub(crate) formulas: Vec<Section>,
+    /// What an evaluation takes by each engine as formulas grow; empty unless both engines are compared.
+    pub(crate) engines: Vec<Evaluation>,
 }
 
 /// The sweep over all settings, for each of the cases.
@@ -62,10 +65,16 @@ pub(crate) struct Sweep {
     /// At least one. All pictures have one size.
     pub(crate) cases: Vec<Case>,
     pub(crate) settings: Vec<Setting>,
+    /// Formulas on which the engines are compared, from small to large.
+    pub(crate) growing: Vec<Formula>,
     pub(crate) rounds: usize,
     /// For all cases together: each gets a fair part of what those before it left.
     pub(crate) deadline: Deadline,
 }
+
+/// How often evaluations of growing formulas are measured at most, and the part of the budget that they may take.
+const MOST_ROUNDS: usize = 3;
+const CLAIMANTS: usize = 6;
 
 impl Sweep {
     /// Measures all settings of each case in turns. After each measurement `publish` is told how many of all are done, and
@@ -74,6 +83,8 @@ impl Sweep {
         &self,
         mut publish: impl FnMut(usize, usize, &dyn Fn() -> Report) -> Result<(), Failure>,
     ) -> Result<Report, Failure> {
+        let (rounds, share) = (self.rounds.min(MOST_ROUNDS), self.deadline.share(CLAIMANTS));
+        let engines = measure_evaluations(&self.growing, rounds, share, |_, _| ())?;
         let each = self.rounds * self.settings.len();
         let mut finished: Vec<Section> = Vec::new();
         for (number, case) in self.cases.iter().enumerate() {
@@ -83,15 +94,16 @@ impl Sweep {
             let deadline = self.deadline.share(self.cases.len() - number);
             let mut study = Study::new(case, &self.settings)?;
             study.run(self.rounds, deadline, |study, done| {
-                let report = || self.report(finished.iter().cloned().chain([study.section()]).collect());
+                let report =
+                    || self.report(finished.iter().cloned().chain([study.section()]).collect(), &engines);
                 publish(number * each + done, self.cases.len() * each, &report)
             })?;
             finished.push(study.finish()?);
         }
-        Ok(self.report(finished))
+        Ok(self.report(finished, &engines))
     }
 
-    fn report(&self, formulas: Vec<Section>) -> Report {
+    fn report(&self, formulas: Vec<Section>, engines: &[Evaluation]) -> Report {
         let size = self.cases[0].subject.size;
         let left_out: Vec<&str> =
             self.cases[formulas.len()..].iter().map(|case| case.name.as_str()).collect();
@@ -110,6 +122,7 @@ impl Sweep {
             threads: rayon::current_num_threads(),
             notes,
             formulas,
+            engines: engines.to_vec(),
         }
     }
 }

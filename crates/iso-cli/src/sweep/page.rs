@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use super::images::LEGEND;
 use super::{Report, Run, Section, plots};
 use crate::html::escaped;
+use crate::scaling::{Family, evaluation_plot};
 
 const STYLE: &str = "\
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; background: #fff; max-width: 76rem; margin: 2rem auto; padding: 0 1rem }
@@ -16,15 +17,16 @@ figure { margin: 1rem 0; max-width: 60rem } svg { width: 100%; height: auto } .m
 .images { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 15rem), 1fr)); gap: 1rem }
 .side-by-side figure, .images figure { margin: 0 } img { width: 100%; image-rendering: pixelated; border: 1px solid #ccc }
 table { border-collapse: collapse; font-size: 0.8rem; width: 100% }
-th, td { padding: 0.15rem 0.4rem; text-align: right; border-bottom: 1px solid #e4e4e4; vertical-align: top; overflow-wrap: anywhere }
-th { font-weight: 600; vertical-align: bottom; overflow-wrap: normal } td:first-child, th:first-child { text-align: left }
-.text { text-align: left }
+th, td { padding: 0.15rem 0.4rem; text-align: right; border-bottom: 1px solid #e4e4e4; vertical-align: top; white-space: nowrap }
+th { font-weight: 600; vertical-align: bottom; white-space: normal } td:first-child, td.text { white-space: normal }
+td:first-child, th:first-child, .text { text-align: left }
 @media screen and (max-width: 60rem) { .detail { display: none } body { margin: 1rem auto; font-size: 15px } }
+@media screen and (max-width: 40rem) { .large { overflow-x: auto } .large svg { min-width: 34rem } }
 @page { margin: 14mm }
 @media print {
   body { margin: 0; padding: 0; max-width: none; font-size: 10pt } table { font-size: 6.5pt } th, td { padding: 0.1rem 0.2rem }
   figure, tr { break-inside: avoid } h2, h3 { break-after: avoid } thead { display: table-header-group }
-  .side-by-side { grid-template-columns: 1fr 1fr } .images { grid-template-columns: repeat(4, 1fr) }
+  .side-by-side { grid-template-columns: 1fr 1fr } .images { display: block } .images figure { display: inline-block; width: 23%; margin-right: 1%; vertical-align: top }
 }";
 
 /// Writes report.html. Its tags are closed and its text escaped as XML asks for.
@@ -64,6 +66,14 @@ pub(crate) fn write_page(report: &Report, writer: &mut dyn Write) -> io::Result<
                 write_figures(section, writer)?;
             }
         }
+    }
+    if !report.engines.is_empty() {
+        let plot = evaluation_plot(&report.engines, Family::Blobs);
+        writeln!(
+            writer,
+            "<h2>The interpreter and native code</h2>\n<figure>\n<div class=\"large\">{plot}</div><figcaption>What one evaluation of \
+             F takes, and what compiling it takes once, as formulas grow: sums of more and more metaballs.</figcaption>\n</figure>"
+        )?;
     }
     writeln!(writer, "</body>\n</html>")
 }
@@ -110,7 +120,8 @@ fn write_figures(section: &Section, writer: &mut dyn Write) -> io::Result<()> {
         format!("<figure>\n{content}<figcaption>{}</figcaption>\n</figure>\n", escaped(caption))
     };
     for plot in large {
-        writer.write_all(figure(&plot.svg, plot.caption).as_bytes())?;
+        let content = format!("<div class=\"large\">{}</div>", plot.svg);
+        writer.write_all(figure(&content, plot.caption).as_bytes())?;
     }
     if !small.is_empty() {
         writeln!(writer, "<h3>More and more cells</h3>\n<div class=\"side-by-side\">")?;
@@ -192,7 +203,11 @@ fn cells(run: &Run) -> [String; HEADS.len()] {
         quality.missed.to_string(),
         quality.made_up.to_string(),
         quality.undecided.to_string(),
-        known(Some(quality.ulps.p999).filter(|ulps| !ulps.is_nan()), 0),
+        match quality.ulps.p999 {
+            ulps if ulps.is_nan() => "–".to_owned(),
+            ulps if ulps < 1e5 => format!("{ulps:.0}"),
+            ulps => format!("{ulps:.1e}"),
+        },
         known(run.peak_memory, 0),
     ]
 }

@@ -2,7 +2,7 @@
 
 use super::advice::front_by;
 use super::{Run, Section};
-use crate::chart::{Chart, Line, Mark};
+use crate::chart::{Chart, Line, Mark, Proportions};
 use crate::flags::EngineName;
 
 /// A plot with what is to be said below it.
@@ -202,7 +202,8 @@ impl<'a> OverCells<'a> {
                 .flat_map(|method| engines.map(|engine| line(method, engine)))
                 .collect(),
             legend: legend(self.runs.iter().map(|(run, _)| *run)),
-            hint: ENGINES,
+            hint: "dashed: interpreter",
+            proportions: Proportions::Small,
         }
         .svg()
     }
