@@ -7,6 +7,8 @@ use super::Run;
 
 /// How many times as long a run may take to count as about as fast.
 const ABOUT_AS_FAST: f64 = 1.1;
+/// How many times as far from proven roots found ones may be to count as about as good.
+const ABOUT_AS_GOOD: f64 = 10.0;
 
 /// How many settings a note names.
 const MOST_RIVALS: usize = 4;
@@ -32,16 +34,17 @@ pub(super) fn front_by(runs: &[Run], error: impl Fn(&Run) -> f64) -> Vec<&Run> {
     sorted
 }
 
-/// The fastest run with the fewest wrong pixels, or the one of those about as fast that finds roots best.
+/// The fastest run with the fewest wrong pixels, unless another one that is about as fast finds roots much better.
 fn recommended(runs: &[Run]) -> Option<&Run> {
     let best = *front(runs).last()?;
-    let is_as_good = |run: &&Run| {
+    let distance = |run: &Run| run.quality.distance.p999;
+    let is_about_as_fast = |run: &&Run| {
         run.quality.wrong() == best.quality.wrong() && run.time().median <= ABOUT_AS_FAST * best.time().median
     };
-    let distance = |run: &Run| run.quality.distance.p999;
-    runs.iter().filter(is_as_good).min_by(|one, other| {
-        distance(one).total_cmp(&distance(other)).then(one.time().median.total_cmp(&other.time().median))
-    })
+    let rivals = || runs.iter().filter(is_about_as_fast);
+    let least = rivals().map(distance).fold(f64::INFINITY, f64::min);
+    let is_about_as_good = |run: &&Run| distance(run).is_nan() || distance(run) <= ABOUT_AS_GOOD * least;
+    rivals().filter(is_about_as_good).min_by(|one, other| one.time().median.total_cmp(&other.time().median))
 }
 
 /// What to use for this formula, and what it costs.
