@@ -45,7 +45,7 @@ for part in "${@:-paper barth_sextic sheets octree engines}"; do
             octree barth_decic "$barth_decic" -1.6,1.6
             octree waves "$waves" -1.5,1.5
             ;;
-        engines) iso engines --budget 4m -o docs/interpreter-or-jit ;;
+        engines) iso engines --budget 200s -o docs/interpreter-or-jit ;;
         *) echo "no part is called $name" >&2 && exit 2 ;;
         esac
     done
