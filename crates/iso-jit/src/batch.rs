@@ -4,7 +4,7 @@ use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{AbiParam, InstBuilder, Signature, Value, types};
 use cranelift_frontend::FunctionBuilder;
 use iso_expr::engine::Points;
-use iso_expr::{BatchKernel, Node, Program, Scratch};
+use iso_expr::{Axis, BatchKernel, Node, Operation, Program, Scratch};
 
 use crate::code::{Blueprint, Compiled};
 use crate::elementary;
@@ -18,6 +18,9 @@ const PAIR: usize = 2;
 
 /// The most pairs of lanes in one round of the loop.
 const MOST_PAIRS: usize = 4;
+
+/// The registers of 128 bits.
+const REGISTERS: usize = 16;
 
 /// The most points in one round.
 const WIDEST: usize = PAIR * MOST_PAIRS;
@@ -84,7 +87,7 @@ pub(crate) struct BatchBlueprint<'a> {
 
 impl<'a> BatchBlueprint<'a> {
     pub(crate) fn new(program: &'a Program) -> Self {
-        Self { program, pairs: if gains_from_pairs(program) { MOST_PAIRS } else { 1 } }
+        Self { program, pairs: pairs(program) }
     }
 
     /// Points in one round.
@@ -162,30 +165,84 @@ impl BatchBlueprint<'_> {
     }
 }
 
-/// Whether evaluating several pairs of lanes side by side is quicker than one after the other: where operations wait for
-/// each other. Where many of them could go on at the same time the processor is busy with one pair, and several lack
-/// registers. Where functions are called, they take most of the time; those that take all pairs at once gain most.
+/// How many pairs of lanes are evaluated side by side, so that operations need not wait for each other: as many as registers hold
+/// the values of. Where functions are called, they take most of the time, and one pair is enough, unless they take all pairs at
+/// once.
 ///
-/// Measured: a chain of 300 operations takes 16 instead of 43 ns a point, a polynomial of 15 operations 0.72 instead of
-/// 0.82; but its gradient, 28 operations no more than 9 deep, 3.1 instead of 1.9.
-fn gains_from_pairs(program: &Program) -> bool {
+/// Measured beside one pair: a chain of 300 operations takes 16 instead of 43 ns a point with four pairs, the paper's polynomial
+/// 0.82 of the time with four, its gradient 0.81 with two, the sextic of Barth 0.88 with two, but its gradient 1.17.
+fn pairs(program: &Program) -> usize {
     if program.operations() > LARGEST_SIDE_BY_SIDE {
-        return false;
+        return 1;
     }
-    let in_lanes =
-        |node: &Node| matches!(node, Node::Apply(operation, _) if elementary::function(*operation).is_some());
-    if program.nodes().iter().any(in_lanes) {
-        return true;
+    let called = |operation: &Operation| !values::is_written_out(*operation);
+    let mut operations = program.nodes().iter().filter_map(|node| match node {
+        Node::Apply(operation, _) => Some(operation),
+        _ => None,
+    });
+    if operations.clone().any(|operation| elementary::function(*operation).is_some()) {
+        return MOST_PAIRS;
     }
-    let mut depths: Vec<usize> = Vec::with_capacity(program.nodes().len());
-    for node in program.nodes() {
-        if let Node::Apply(operation, _) = node
-            && !values::is_written_out(*operation)
-        {
-            return false;
+    if operations.any(called) {
+        return 1;
+    }
+    match REGISTERS / most_alive(program).max(1) {
+        0 | 1 => 1,
+        2 | 3 => 2,
+        _ => MOST_PAIRS,
+    }
+}
+
+/// How many values are needed at the same time at most, constants aside.
+fn most_alive(program: &Program) -> usize {
+    let is_constant = |place: usize| matches!(program.nodes()[place], Node::Constant(_));
+    let mut last_reader = vec![0; program.nodes().len()];
+    for (id, node) in program.iter() {
+        node.operands().iter().for_each(|operand| last_reader[operand.index()] = id.index());
+    }
+    // Outputs are written at the end.
+    program.outputs().iter().for_each(|output| last_reader[output.index()] = usize::MAX);
+    let (mut alive, mut most) = (Axis::ALL.iter().filter(|axis| program.takes(**axis)).count(), 0);
+    for (id, node) in program.iter() {
+        for (place, operand) in node.operands().iter().enumerate() {
+            let is_repeated = node.operands()[..place].contains(operand);
+            let ends = last_reader[operand.index()] == id.index() && !is_constant(operand.index());
+            alive -= usize::from(ends && !is_repeated);
         }
-        depths.push(node.operands().iter().map(|operand| depths[operand.index()] + 1).max().unwrap_or(0));
+        alive += usize::from(matches!(node, Node::Apply(..)));
+        most = most.max(alive);
     }
-    let deepest = depths.into_iter().max().unwrap_or(0);
-    program.operations() <= 3 * deepest
+    most
+}
+
+#[cfg(test)]
+mod tests {
+    use iso_expr::Ast;
+
+    use super::*;
+
+    fn program(formula: &str) -> Program {
+        let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
+        program.with_powers_expanded()
+    }
+
+    #[test]
+    fn values_are_alive_until_they_were_read_for_the_last_time() {
+        for (formula, expected) in
+            [("x + y + z", 3), ("x*x", 1), ("x + 1", 1), ("(x + y) * (x - y)", 3), ("x^4 + 2", 1)]
+        {
+            assert_eq!(most_alive(&program(formula)), expected, "{formula}");
+        }
+        let gradient = program("x*y*z").with_gradient();
+        assert!(most_alive(&gradient) >= gradient.outputs().len());
+    }
+
+    #[test]
+    fn pairs_share_the_registers() {
+        assert_eq!(pairs(&program("x + y + z")), 4);
+        assert_eq!(pairs(&program("x + y + atan(z)")), 1);
+        let powers =
+            (1..12).map(|power| format!("(x + {power})*(y - z)^{power}")).collect::<Vec<_>>().join(" + ");
+        assert_eq!(pairs(&program(&powers).with_gradient()), 1);
+    }
 }

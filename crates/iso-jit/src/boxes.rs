@@ -20,6 +20,10 @@ use crate::trampoline::Room;
 /// Boxes in one round of the loop.
 const PAIR: usize = 2;
 
+/// The most operations of a program whose constants stay in registers. Measured: 17 operations are 8 % faster with it, 33 are 9 %
+/// slower, and 75 with quickly allocated registers take 1.7 times as long.
+const LARGEST_WITH_LASTING_CONSTANTS: usize = 24;
+
 /// Where a kernel reads and writes: the boxes' ends along x, y and z, and room for the outputs' enclosures.
 #[repr(C)]
 pub(crate) struct Places {
@@ -158,9 +162,13 @@ struct Round<'a, 'b> {
 
 impl Round<'_, '_> {
     fn write(&mut self, calls: &mut Calls<'_>, program: &Program, ranges: &[Decorated]) {
+        let is_large = program.operations() > LARGEST_WITH_LASTING_CONSTANTS;
         let mut room = None;
         let mut enclosures: Vec<Enclosure> = Vec::with_capacity(program.nodes().len());
         for (node, range) in program.nodes().iter().zip(ranges) {
+            if is_large {
+                self.writer.forget_constants();
+            }
             enclosures.push(match node {
                 Node::Variable(axis) => self.argument(*axis as usize, *range),
                 Node::Constant(_) => enclosures::constant(&mut self.writer, *range),

@@ -68,6 +68,12 @@ impl Writer<'_, '_> {
         })
     }
 
+    /// Makes constants anew from here on. Where there are many values, constants that stay in registers from their first use to
+    /// their last are in the way of others, and of the allocation of registers, which takes longer than in proportion.
+    pub(crate) fn forget_constants(&mut self) {
+        self.constants.clear();
+    }
+
     /// The doubles that stand `offset` bytes after `address`.
     pub(crate) fn load(&mut self, address: Value, offset: i32) -> Value {
         self.builder.ins().load(self.lanes.ty(), slice_access(), address, offset)
