@@ -45,7 +45,11 @@ for part in "${@:-paper barth_sextic sheets octree engines}"; do
             octree barth_decic "$barth_decic" -1.6,1.6
             octree waves "$waves" -1.5,1.5
             ;;
-        engines) iso engines --budget 200s -o docs/interpreter-or-jit ;;
+        engines)
+            iso engines --budget 200s -o docs/interpreter-or-jit
+            iso engines --sizes 3,10,30,100 --sides 1024,2048,4096 --runs 2 --patience 6s --budget 200s -o docs/interpreter-or-jit/large
+            rm docs/interpreter-or-jit/large/evaluations*
+            ;;
         *) echo "no part is called $name" >&2 && exit 2 ;;
         esac
     done
