@@ -24,7 +24,7 @@ td:first-child, th:first-child, .text { text-align: left }
 @media screen and (max-width: 40rem) { .large { overflow-x: auto } .large svg { min-width: 34rem } }
 @page { margin: 14mm }
 @media print {
-  body { margin: 0; padding: 0; max-width: none; font-size: 10pt } table { font-size: 6.5pt } th, td { padding: 0.1rem 0.2rem }
+  body { margin: 0; padding: 0; max-width: none; font-size: 10pt } .about, .note, figcaption { font-size: 8pt } table { font-size: 6.5pt } th, td { padding: 0.1rem 0.2rem }
   figure, tr { break-inside: avoid } h2, h3 { break-after: avoid } thead { display: table-header-group }
   .side-by-side { grid-template-columns: 1fr 1fr } .images { display: block } .images figure { display: inline-block; width: 23%; margin-right: 1%; vertical-align: top }
 }";
