@@ -30,17 +30,19 @@ pub(crate) struct Limits {
 /// With care, 10,000 random operations would take 100 and 100,000 of them 7,000.
 pub(crate) const POINTS: Limits = Limits { largest: 100_000, largest_with_care: 2_000 };
 
-/// For kernels over boxes, where an operation takes twenty to fifty instructions.
+/// For kernels over boxes, where an operation takes five to fifty instructions. Sums of products of shifted coordinates:
 ///
-/// | operations | sum of products | random arithmetic | with care    |
-/// |-----------:|----------------:|------------------:|--------------|
-/// |         20 |               1 |                 1 | yes          |
-/// |        100 |              15 |                20 | yes          |
-/// |      1,000 |              36 |               100 | no           |
-/// |      3,000 |             160 |               440 | no           |
-/// |     10,000 |              620 |  too large a frame | no           |
+/// | operations | milliseconds | with care    |
+/// |-----------:|-------------:|--------------|
+/// |         18 |          0.7 | yes          |
+/// |         59 |          2.0 | yes          |
+/// |        177 |          2.6 | no           |
+/// |        590 |           11 | no           |
+/// |      1,770 |           34 | no           |
+/// |      8,260 |          220 | no           |
 ///
-/// With care, 1,000 operations would take 230 to 1,500. The kernels are then 1.3 to 1.8 times as fast.
+/// With care, Barth's sextic and what rounding does to it, 124 operations, would take several times as long; the kernel would
+/// then be 1.5 times as fast. `benches/kernels` measures times to compile.
 pub(crate) const BOXES: Limits = Limits { largest: 10_000, largest_with_care: 100 };
 
 /// This machine's instruction set, with every extension that the processor reports.
