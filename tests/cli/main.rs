@@ -9,6 +9,7 @@ mod formulas;
 mod limits;
 mod render;
 mod report;
+mod sequence;
 mod stress;
 mod trace;
 mod usage;

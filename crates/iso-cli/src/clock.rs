@@ -41,6 +41,17 @@ impl Phases {
     }
 }
 
+impl std::ops::AddAssign for Phases {
+    fn add_assign(&mut self, other: Self) {
+        self.parse += other.parse;
+        self.compile += other.compile;
+        self.preprocess += other.preprocess;
+        self.trace += other.trace;
+        self.shade += other.shade;
+        self.encode += other.encode;
+    }
+}
+
 /// Runs `work` and adds its milliseconds to `phase`.
 pub(crate) fn add_to<T>(phase: &mut f64, work: impl FnOnce() -> T) -> T {
     let (result, duration) = timed(work);

@@ -88,9 +88,12 @@ impl Interruption {
         self.stop.clone()
     }
 
-    /// Preparations are done: from now on there may be something finished that is worth keeping.
+    /// The first preparations are done: from now on there may be something finished that is worth keeping.
     pub(crate) fn begin_work(&self) {
-        *self.stage() = Stage::Working;
+        let mut stage = self.stage();
+        if let Stage::Preparing = *stage {
+            *stage = Stage::Working;
+        }
     }
 
     /// Ends the work; false when it was ended before. Preparations have nothing to keep, and may be deep in a compiler or wait

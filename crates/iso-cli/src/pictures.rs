@@ -21,15 +21,33 @@ pub(crate) struct PictureFiles {
 impl PictureFiles {
     /// Checks names and places before anything is computed.
     pub(crate) fn resolve(flags: &LayerFlags) -> Result<Self, Failure> {
-        let color = color(flags).map(|path| {
+        Self::named(color(flags, STILL), flags, &|path| path.to_owned())
+    }
+
+    /// The same for a picture of a sequence of `count`, whose number goes into all names. An animation is no file of its own.
+    pub(crate) fn numbered(flags: &LayerFlags, number: u32, count: u32) -> Result<Self, Failure> {
+        let color = color(flags, ANIMATION).filter(|path| !is_animation(path));
+        Self::named(color, flags, &|path| with_number(path, number, count))
+    }
+
+    /// Files with the names that `rename` makes of those given.
+    fn named(
+        color: Option<PathBuf>,
+        flags: &LayerFlags,
+        rename: &dyn Fn(&Path) -> PathBuf,
+    ) -> Result<Self, Failure> {
+        let color = color.map(|path| {
             let format = ImageFormat::of(&path)?;
-            Ok::<_, Failure>((OutputFile::new(path)?, format))
+            Ok::<_, Failure>((OutputFile::new(rename(&path))?, format))
         });
+        let other = |path: &Option<PathBuf>, extension, flag| {
+            with_extension(path.as_deref().map(rename), extension, flag)
+        };
         Ok(Self {
             color: color.transpose()?,
-            depth: with_extension(&flags.depth, "exr", "--depth")?,
-            normals: with_extension(&flags.normals, "exr", "--normals")?,
-            points: with_extension(&flags.points, "csv", "--points")?,
+            depth: other(&flags.depth, "exr", "--depth")?,
+            normals: other(&flags.normals, "exr", "--normals")?,
+            points: other(&flags.points, "csv", "--points")?,
         })
     }
 
@@ -62,7 +80,7 @@ impl PictureFiles {
 pub(crate) fn layers(flags: &LayerFlags) -> Layers {
     let points = flags.points.is_some();
     Layers {
-        color: color(flags).is_some(),
+        color: color(flags, STILL).is_some(),
         depth: points || flags.depth.is_some(),
         normals: points || flags.normals.is_some(),
         points,
@@ -71,24 +89,46 @@ pub(crate) fn layers(flags: &LayerFlags) -> Layers {
     }
 }
 
-/// Where the shaded picture goes: when nothing is asked for, that is what is meant.
-fn color(flags: &LayerFlags) -> Option<PathBuf> {
-    let others = [&flags.depth, &flags.normals, &flags.points];
-    let nothing_else = others.into_iter().all(Option::is_none);
-    flags.output.clone().or_else(|| nothing_else.then(|| PathBuf::from("iso.png")))
+/// The shaded picture's name where none is given.
+const STILL: &str = "iso.png";
+/// That of the pictures of a sequence.
+const ANIMATION: &str = "iso.gif";
+
+/// The file of all pictures of a sequence, unless each has its own.
+pub(crate) fn animation(flags: &LayerFlags) -> Result<Option<OutputFile>, Failure> {
+    color(flags, ANIMATION).filter(|path| is_animation(path)).map(OutputFile::new).transpose()
 }
 
-fn with_extension(
-    path: &Option<PathBuf>,
-    extension: &str,
-    flag: &str,
-) -> Result<Option<OutputFile>, Failure> {
+fn is_animation(path: &Path) -> bool {
+    has_extension(path, "gif")
+}
+
+/// The path with a number before its extension, with leading zeros so that names sort as numbers do.
+fn with_number(path: &Path, number: u32, count: u32) -> PathBuf {
+    let digits = (count - 1).to_string().len();
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(format!("-{number:0digits$}"));
+    if let Some(extension) = path.extension() {
+        name.push(".");
+        name.push(extension);
+    }
+    path.with_file_name(name)
+}
+
+/// Where the shaded picture goes: when nothing is asked for, that is what is meant, under its usual name.
+fn color(flags: &LayerFlags, usual: &str) -> Option<PathBuf> {
+    let others = [&flags.depth, &flags.normals, &flags.points];
+    let nothing_else = others.into_iter().all(Option::is_none);
+    flags.output.clone().or_else(|| nothing_else.then(|| PathBuf::from(usual)))
+}
+
+fn with_extension(path: Option<PathBuf>, extension: &str, flag: &str) -> Result<Option<OutputFile>, Failure> {
     let Some(path) = path else { return Ok(None) };
-    if !has_extension(path, extension) {
+    if !has_extension(&path, extension) {
         let problem = format!("{flag} writes .{extension} files, but the name given is {}", path.display());
         return Err(Failure::Usage { problem, help: None });
     }
-    OutputFile::new(path.clone()).map(Some)
+    OutputFile::new(path).map(Some)
 }
 
 fn has_extension(path: &Path, extension: &str) -> bool {

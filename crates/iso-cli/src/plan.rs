@@ -102,10 +102,9 @@ impl PlanReport {
         }
     }
 
-    /// The same after the work: with the number of kernels that it came to.
-    pub(crate) fn after(self, surface: &Surface) -> Self {
-        let compiled = Kernel::ALL.into_iter().filter(|kernel| surface.is_compiled(*kernel));
-        Self { kernels_compiled: compiled.count(), ..self }
+    /// The same after the work, for which so many kernels were compiled.
+    pub(crate) fn after(self, kernels_compiled: usize) -> Self {
+        Self { kernels_compiled, ..self }
     }
 
     /// Writes the plan for people: a line for each decision.
@@ -133,6 +132,11 @@ impl PlanReport {
         }
         writeln!(writer)
     }
+}
+
+/// How many kernels of a surface are compiled by now.
+pub(crate) fn kernels_compiled(surface: &Surface) -> usize {
+    Kernel::ALL.into_iter().filter(|kernel| surface.is_compiled(*kernel)).count()
 }
 
 fn lines<T: Copy>(decisions: &[Decision<T>], name: fn(T) -> &'static str) -> Vec<Line> {

@@ -1,6 +1,6 @@
 //! What a picture took, for programs (`--json`) and for people.
 
-use std::io::{self, Write};
+use std::fmt::{self, Display, Formatter};
 
 use iso_grid::Counters;
 use iso_render::StatusCounts;
@@ -8,12 +8,16 @@ use serde::Serialize;
 
 use crate::clock::Phases;
 use crate::plan::PlanReport;
+use crate::values::Setting;
 
 /// What a picture took. Its fields are the keys of `iso render --json`.
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
     /// The files that were written.
     pub(crate) files: Vec<String>,
+    /// Which picture of a sequence it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) frame: Option<Frame>,
     /// The picture's width in pixels.
     pub(crate) width: u32,
     /// The picture's height in pixels.
@@ -42,39 +46,94 @@ pub(crate) struct Summary {
     pub(crate) milliseconds: Phases,
 }
 
-impl Summary {
-    /// Writes the summary as one JSON object.
-    pub(crate) fn write_json(&self, writer: &mut dyn Write) -> io::Result<()> {
-        serde_json::to_writer_pretty(&mut *writer, self)?;
-        writeln!(writer)
-    }
+/// What a picture is in its sequence.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Frame {
+    /// Its place, from 0.
+    pub(crate) number: u32,
+    /// Degrees around the z axis, where the camera walks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) yaw: Option<f64>,
+    /// The parameters that run, and their values.
+    pub(crate) settings: Vec<Setting>,
+}
 
-    /// The summary in one line.
-    pub(crate) fn line(&self) -> String {
-        let Self { pixels, milliseconds, .. } = self;
-        let total = milliseconds.total();
-        let times = [
-            ("parse", milliseconds.parse),
-            ("compile", milliseconds.compile),
-            ("preprocess", milliseconds.preprocess),
-            ("trace", milliseconds.trace),
-            ("shade", milliseconds.shade),
-            ("encode", milliseconds.encode),
-        ];
-        let unfinished = match pixels.unfinished {
-            0 => String::new(),
-            count => format!(", {count} unfinished"),
-        };
-        let times = times.map(|(phase, time)| format!("{phase} {time:.1}")).join(", ");
-        format!(
-            "{}: {}x{} pixels: {} hit, {} touch, {} miss, {} undecided{unfinished}; {total:.1} ms ({times})",
-            self.files.join(", "),
-            self.width,
-            self.height,
-            pixels.hit,
-            pixels.touch,
-            pixels.miss,
-            pixels.undecided,
-        )
+impl Summary {
+    /// Drawn pixels that are finished.
+    pub(crate) fn finished_pixels(&self) -> u64 {
+        let StatusCounts { hit, touch, miss, undecided, unfinished: _ } = self.pixels;
+        hit + touch + miss + undecided
     }
+}
+
+/// The summary in one line.
+impl Display for Summary {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { width, height, pixels, milliseconds, .. } = self;
+        write!(f, "{}: {width}x{height} pixels: ", self.files.join(", "))?;
+        write_line(f, pixels, milliseconds)
+    }
+}
+
+/// What a sequence of pictures took. Its fields are the keys of `iso render --json` for sequences.
+#[derive(Debug, Serialize)]
+pub(crate) struct SequenceSummary {
+    /// All files that were written.
+    files: Vec<String>,
+    /// Drawn pixels of all pictures by status.
+    pixels: StatusCounts,
+    /// Counts of work for all pictures.
+    counters: Counters,
+    /// Times of all pictures.
+    milliseconds: Phases,
+    /// Each picture.
+    frames: Vec<Summary>,
+}
+
+impl SequenceSummary {
+    /// The summary of pictures, one at least.
+    pub(crate) fn of(frames: Vec<Summary>) -> Self {
+        let mut whole = Self {
+            files: Vec::new(),
+            pixels: StatusCounts::default(),
+            counters: Counters::default(),
+            milliseconds: Phases::default(),
+            frames: Vec::new(),
+        };
+        for frame in &frames {
+            for file in &frame.files {
+                if !whole.files.contains(file) {
+                    whole.files.push(file.clone());
+                }
+            }
+            whole.pixels += frame.pixels;
+            whole.counters += frame.counters;
+            whole.milliseconds += frame.milliseconds;
+        }
+        Self { frames, ..whole }
+    }
+}
+
+/// The summary in one line.
+impl Display for SequenceSummary {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match &self.files[..] {
+            [first, .., last] => write!(f, "{first} … {last}")?,
+            files => write!(f, "{}", files.concat())?,
+        }
+        let Summary { width, height, .. } = &self.frames[0];
+        write!(f, ": {} pictures of {width}x{height} pixels: ", self.frames.len())?;
+        write_line(f, &self.pixels, &self.milliseconds)
+    }
+}
+
+fn write_line(f: &mut Formatter<'_>, pixels: &StatusCounts, milliseconds: &Phases) -> fmt::Result {
+    let StatusCounts { hit, touch, miss, undecided, unfinished } = pixels;
+    write!(f, "{hit} hit, {touch} touch, {miss} miss, {undecided} undecided")?;
+    if *unfinished > 0 {
+        write!(f, ", {unfinished} unfinished")?;
+    }
+    let Phases { parse, compile, preprocess, trace, shade, encode } = milliseconds;
+    write!(f, "; {:.1} ms (parse {parse:.1}, compile {compile:.1}, ", milliseconds.total())?;
+    write!(f, "preprocess {preprocess:.1}, trace {trace:.1}, shade {shade:.1}, encode {encode:.1})")
 }

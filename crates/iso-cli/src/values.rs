@@ -6,6 +6,7 @@ use std::time::Duration;
 use glam::DVec3;
 use iso_grid::{GridSettings, Region};
 use iso_render::{Size, Smoothing};
+use serde::Serialize;
 
 /// A finite number.
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
@@ -102,7 +103,7 @@ pub(crate) fn duration(text: &str) -> Result<Duration, String> {
 }
 
 /// A value for a parameter of the formula.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Setting {
     /// The parameter's name.
     pub(crate) name: String,
@@ -121,6 +122,34 @@ impl FromStr for Setting {
             "" => Err("expected name=number, but the name is missing".to_owned()),
             name => Ok(Self { name: name.to_owned(), value: finite(value)? }),
         }
+    }
+}
+
+/// A parameter that runs from one value to another.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Sweep {
+    name: String,
+    from: f64,
+    to: f64,
+}
+
+impl FromStr for Sweep {
+    type Err = String;
+
+    /// `name=from:to`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split_once('=').and_then(|(name, range)| Some((name, range.split_once(':')?)));
+        let Some((name, (from, to))) = parts.filter(|(name, _)| !name.trim().is_empty()) else {
+            return Err(format!("expected NAME=FROM:TO, as in `a=0:2`, found `{text}`"));
+        };
+        Ok(Self { name: name.trim().to_owned(), from: finite(from)?, to: finite(to)? })
+    }
+}
+
+impl Sweep {
+    /// The value after a part of the way, from 0 to 1. The ends are exact.
+    pub(crate) fn at(&self, way: f64) -> Setting {
+        Setting { name: self.name.clone(), value: (1.0 - way) * self.from + way * self.to }
     }
 }
 
@@ -175,6 +204,16 @@ mod tests {
         assert_eq!("a=-.5".parse(), Ok(Setting { name: "a".to_owned(), value: -0.5 }));
         for wrong in ["", "a", "=1", "a=", "a=b", "a=nan", "a=inf"] {
             assert!(wrong.parse::<Setting>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_sweep_runs_from_end_to_end() {
+        let sweep: Sweep = "a=-1:0.3".parse().unwrap();
+        assert_eq!([0.0, 0.5, 1.0].map(|way| sweep.at(way).value), [-1.0, -0.35, 0.3]);
+        assert_eq!(sweep.at(0.0).name, "a");
+        for wrong in ["", "a", "a=1", "=1:2", "a=1:", "a=:2", "a=1:nan", "a=1:2:3"] {
+            assert!(wrong.parse::<Sweep>().is_err(), "{wrong}");
         }
     }
 

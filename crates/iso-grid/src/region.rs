@@ -65,6 +65,14 @@ impl Region {
         self.max
     }
 
+    /// The least box that holds this one and `other`.
+    ///
+    /// # Errors
+    /// When its extent overflows.
+    pub fn hull(&self, other: &Self) -> Result<Self, RegionError> {
+        Self::new(self.min.min(other.min), self.max.max(other.max))
+    }
+
     /// The middle.
     pub fn center(&self) -> DVec3 {
         self.min + 0.5 * self.extent()

@@ -1,13 +1,17 @@
 //! The surface F − C = 0 as kernels, compiled when first needed.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use iso_expr::{BatchKernel, BoxKernel, CompileError, Engine, Program};
 
-use crate::Stop;
+use crate::certified::Cells;
+use crate::{Region, Stop};
 
 /// The kernels of F − C and of its gradient. Each is compiled when it is first asked for, and F − C is differentiated when
 /// the first that takes its gradient is.
+///
+/// The surface also keeps which cells of a region are proven to hold nothing of it, so that the certified method proves each
+/// of them once, however many pictures of that region are drawn.
 pub struct Surface {
     engine: Arc<dyn Engine>,
     value: Program,
@@ -18,6 +22,7 @@ pub struct Surface {
     value_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     gradient_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     rounding_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
+    cells: Mutex<Option<(Region, Arc<Cells>)>>,
     stop: Stop,
 }
 
@@ -75,6 +80,7 @@ impl Surface {
             value_boxes: OnceLock::new(),
             gradient_boxes: OnceLock::new(),
             rounding_boxes: OnceLock::new(),
+            cells: Mutex::new(None),
             stop: Stop::default(),
         }
     }
@@ -87,6 +93,20 @@ impl Surface {
     /// What ends work on this surface.
     pub fn stop(&self) -> &Stop {
         &self.stop
+    }
+
+    /// What is known of the cells of `region`. That of the last region asked for is kept.
+    pub(crate) fn cells(&self, region: &Region) -> Arc<Cells> {
+        // Cells are only ever put in whole.
+        let mut kept = self.cells.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*kept {
+            Some((of, cells)) if of == region => Arc::clone(cells),
+            _ => {
+                let cells = Arc::new(Cells::new(region));
+                *kept = Some((*region, Arc::clone(&cells)));
+                cells
+            }
+        }
     }
 
     /// The program of F − C.

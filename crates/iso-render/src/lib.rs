@@ -22,7 +22,7 @@ pub use color::{Color, color_from_srgb, srgb_from_color};
 #[cfg(any(feature = "images", feature = "openexr"))]
 pub use encode::EncodeError;
 #[cfg(feature = "images")]
-pub use encode::ImageFormat;
+pub use encode::{Animation, ImageFormat};
 pub use picture::{Layers, Picture, Status, StatusCounts};
 pub use plan::{Buffer, Decision, Given, Pass, Plan, Wanted};
 pub use render::{Progress, RenderError, Scene, render};

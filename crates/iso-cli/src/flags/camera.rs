@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::values;
 
 /// The camera. By default it stands far enough away to see the whole box.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Camera", allow_negative_numbers = true)]
 pub(crate) struct CameraFlags {
     /// Degrees around the z axis, counter-clockwise from above; 0 looks along +y [default: 30]

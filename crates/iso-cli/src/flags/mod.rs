@@ -11,6 +11,7 @@ mod limit;
 mod method;
 mod render;
 mod report;
+mod sequence;
 mod stress;
 mod trace;
 
@@ -28,6 +29,7 @@ pub(crate) use method::{
 };
 pub(crate) use render::{LayerFlags, PictureFlags, RenderFlags, SummaryFlags};
 pub(crate) use report::{AxesFlags, ReportFlags, SuiteName};
+pub(crate) use sequence::SequenceFlags;
 pub(crate) use stress::StressFlags;
 pub(crate) use trace::TraceFlags;
 

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use iso_render::{Size, Smoothing};
 
-use super::{CameraFlags, EngineFlag, FormulaFlags, LevelFlag, LimitFlags, MethodFlags, ThreadsFlag};
+use super::{
+    CameraFlags, EngineFlag, FormulaFlags, LevelFlag, LimitFlags, MethodFlags, SequenceFlags, ThreadsFlag,
+};
 use crate::values;
 
 /// Draw a surface
@@ -17,6 +19,8 @@ use crate::values;
 pub(crate) struct RenderFlags {
     #[command(flatten)]
     pub(crate) picture: PictureFlags,
+    #[command(flatten)]
+    pub(crate) sequence: SequenceFlags,
     #[command(flatten)]
     pub(crate) summary: SummaryFlags,
 }
@@ -46,7 +50,7 @@ pub(crate) struct PictureFlags {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct LayerFlags {
-    /// The picture; its extension says the format: png, jpg, webp, tif, bmp, ppm or qoi [default: iso.png, if nothing else is written]
+    /// The picture; its extension says the format: png, jpg, webp, tif, bmp, ppm, qoi or gif [default: iso.png, if nothing else is written]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
 
@@ -97,4 +101,6 @@ Examples:
   iso render 'x^4 + y^4 + z^4 = 1' --smooth 3 -o figure.png
   iso render '-x^2 - y^2 - z^2' --level -1 --method grid --grid 60 --json
   iso render @heart.txt --set a=0.5 --size 1920x1080 -o heart.png --points points.csv
-  iso render 'x^2 + y^2 = z' --ortho --depth depth.exr";
+  iso render 'x^2 + y^2 = z' --ortho --depth depth.exr
+  iso render 'x^4 + y^4 + z^4 = 1' --turntable -o spin.gif
+  iso render 'a := 2; x^a + y^a + z^a = 1' --sweep a=2:8 --frames 50 -o grow.png";

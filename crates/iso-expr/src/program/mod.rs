@@ -89,6 +89,13 @@ pub struct Program {
     outputs: Vec<NodeId>,
 }
 
+/// Equal programs have the same nodes in the same order, and the same outputs.
+impl PartialEq for Program {
+    fn eq(&self, other: &Self) -> bool {
+        self.nodes == other.nodes && self.outputs == other.outputs
+    }
+}
+
 impl Program {
     /// A program without nodes or outputs.
     pub fn new() -> Self {

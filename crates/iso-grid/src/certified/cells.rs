@@ -18,7 +18,7 @@ const PIECES: usize = 16;
 ///
 /// What is found out about a cell depends on the surface and the cell alone, so it does not matter which ray comes first,
 /// nor that threads that come by at once each find it out.
-pub(super) struct Cells {
+pub(crate) struct Cells {
     /// The planes between the smallest cells, along each axis, the region's faces included.
     planes: [Vec<f64>; 3],
     /// For each cell but the smallest: which of its parts are empty, one bit each, and [`KNOWN`] once that has been asked.
@@ -58,7 +58,7 @@ impl Cell {
 }
 
 impl Cells {
-    pub(super) fn new(region: &Region) -> Self {
+    pub(crate) fn new(region: &Region) -> Self {
         let count = 1 << DEPTH;
         let planes = [0, 1, 2].map(|axis| {
             let (min, max) = (region.min()[axis], region.max()[axis]);

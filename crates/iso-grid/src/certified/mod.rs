@@ -20,7 +20,8 @@ use iso_expr::{BatchKernel, CompileError, Program};
 use crate::{Counters, Outcome, Ray, Region, Span, Stop, Surface, Tracer, Workspace};
 pub(crate) use beams::Pixel;
 use beams::{Bundle, Subdivision};
-use cells::{Cell, Cells};
+use cells::Cell;
+pub(crate) use cells::Cells;
 use clip::Clip;
 pub(crate) use isolate::Expansion;
 use isolate::Isolation;
@@ -44,9 +45,9 @@ use walk::Walk;
 ///   possible root next to a jump, a pole or an edge of the domain, on a face of the region, or since too much
 ///   work was done along this ray.
 ///
-/// The region is a grid of cells, proven empty where they are when a ray first comes by; what is found out is kept, and
-/// spares later rays the search through empty space. It depends on the surface alone, so that the outcome of a ray does
-/// not depend on others. Where F is a polynomial and a ray is hard, its Bernstein coefficients along the ray tell the
+/// The region is a grid of cells, proven empty where they are when a ray first comes by; what is found out is kept with the
+/// surface, and spares later rays and later pictures the search through empty space. It depends on the surface alone, so that
+/// the outcome of a ray does not depend on others. Where F is a polynomial and a ray is hard, its Bernstein coefficients along the ray tell the
 /// search where to look.
 ///
 /// The ray is searched front to back. A stretch of it is discarded when the enclosure of F excludes zero, over the
@@ -60,7 +61,7 @@ pub struct Certified {
     program: Program,
     polynomial: Option<Polynomial>,
     region: Region,
-    cells: Cells,
+    cells: Arc<Cells>,
     accuracy: f64,
     stop: Stop,
 }
@@ -86,7 +87,7 @@ impl Certified {
             value_batch: Arc::clone(surface.values()?),
             program: surface.program().clone(),
             polynomial: Polynomial::of(surface.program()),
-            cells: Cells::new(&region),
+            cells: surface.cells(&region),
             region,
             accuracy: Self::ACCURACY,
             stop: surface.stop().clone(),

@@ -15,8 +15,8 @@ pub struct ImageFormat(image::ImageFormat);
 
 impl ImageFormat {
     /// The file name extensions that can be written.
-    pub const EXTENSIONS: [&'static str; 9] =
-        ["png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp", "ppm", "qoi"];
+    pub const EXTENSIONS: [&'static str; 10] =
+        ["png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp", "ppm", "qoi", "gif"];
 
     /// The format that belongs to the extension of `path`.
     ///

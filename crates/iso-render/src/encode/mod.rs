@@ -1,12 +1,16 @@
 //! Writing pictures: shaded ones in the format of a file's extension, depths and normals as OpenEXR.
 
 #[cfg(feature = "images")]
+mod animation;
+#[cfg(feature = "images")]
 mod images;
 #[cfg(feature = "openexr")]
 mod openexr;
 
 use thiserror::Error;
 
+#[cfg(feature = "images")]
+pub use animation::Animation;
 #[cfg(feature = "images")]
 pub use images::ImageFormat;
 

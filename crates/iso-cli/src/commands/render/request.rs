@@ -1,0 +1,204 @@
+//! What is to be drawn, how, and where it goes; and drawing it.
+
+use std::io::Write;
+use std::sync::Arc;
+
+use iso_expr::Engine;
+use iso_grid::{Counters, GridError, Kernel, Region, Tracer};
+use iso_render::{Animation, Pass, Picture, Scene, Shading, Size, Smoothing, render};
+use rayon::ThreadPool;
+
+use super::shots::{Shot, Subject, shots};
+use crate::camera::camera;
+use crate::clock::add_to;
+use crate::engine::{engine, threads};
+use crate::failure::Failure;
+use crate::flags::RenderFlags;
+use crate::interruption::Interruption;
+use crate::method::region;
+use crate::output::OutputFile;
+use crate::pictures::animation;
+use crate::plan::{PlanReport, kernels_compiled};
+use crate::progress::Progress;
+use crate::summary::Summary;
+
+/// All that flags and files say, checked.
+pub(super) struct Request {
+    shots: Vec<Shot>,
+    region: Option<Region>,
+    smoothing: Smoothing,
+    /// The size in which pictures are drawn, before they are smoothed.
+    drawn: Size,
+    shows_status: bool,
+    /// Where all pictures go together.
+    animation: Option<OutputFile>,
+    engine: Arc<dyn Engine>,
+    threads: ThreadPool,
+    pub(super) interruption: Interruption,
+}
+
+/// A surface whose rays can be followed: kept while pictures show the same one.
+struct Prepared {
+    subject: Arc<Subject>,
+    tracer: Box<dyn Tracer>,
+}
+
+impl Request {
+    pub(super) fn resolve(flags: RenderFlags) -> Result<Self, Failure> {
+        let interruption = Interruption::new(&flags.picture.limit);
+        let picture = &flags.picture;
+        let smoothing = picture.output.smooth;
+        let drawn = smoothing
+            .drawn(picture.output.size)
+            .map_err(|error| Failure::usage(error.to_string(), "choose a smaller --size or --smooth"))?;
+        let mut compile = 0.0;
+        let engine = add_to(&mut compile, || engine(picture.engine.engine))?;
+        let mut shots = shots(&flags, &engine, &interruption.stop())?;
+        shots[0].phases.compile += compile;
+        Ok(Self {
+            shots,
+            region: picture.method.region.region,
+            smoothing,
+            drawn,
+            shows_status: picture.output.show_status,
+            animation: flags.sequence.is_wanted().then(|| animation(&picture.output)).transpose()?.flatten(),
+            engine,
+            threads: threads(&picture.threads)?,
+            interruption,
+        })
+    }
+
+    /// Pixels of all pictures, as they are drawn.
+    pub(super) fn pixels(&self) -> u64 {
+        self.shots.len() as u64 * self.drawn.pixels() as u64
+    }
+
+    /// Draws the pictures and writes their files, and says what each took. Those that are not begun when work is stopped
+    /// are left out.
+    pub(super) fn fulfil(mut self, shows_progress: bool) -> Result<Vec<Summary>, Failure> {
+        let region = self.region()?;
+        let mut bytes = Vec::new();
+        let mut animated = self.animation.as_ref().map(|_| Animation::new(&mut bytes)).transpose()?;
+        let all = self.pixels();
+        let progress = Progress::new(shows_progress);
+        let summaries = self.draw_all(region, animated.as_mut(), &progress);
+        progress.finish();
+        drop(animated);
+        let mut summaries = summaries?;
+        if summaries.is_empty() {
+            self.interruption.check_begun(all, all)?;
+        }
+        if let Some(file) = &self.animation {
+            file.write(|writer| writer.write_all(&bytes))?;
+            summaries.iter_mut().for_each(|summary| summary.files.push(file.path().display().to_string()));
+        }
+        Ok(summaries)
+    }
+
+    fn draw_all(
+        &mut self,
+        region: Region,
+        mut animation: Option<&mut Animation<&mut Vec<u8>>>,
+        progress: &Progress,
+    ) -> Result<Vec<Summary>, Failure> {
+        let (all, of_one) = (self.pixels(), self.drawn.pixels() as u64);
+        let mut prepared = None;
+        let mut summaries: Vec<Summary> = Vec::new();
+        for (shot, before) in std::mem::take(&mut self.shots).into_iter().zip((0..).step_by(of_one as usize))
+        {
+            let report = |done, _| progress.report(before + done, all);
+            let drawn = self.threads.install(|| self.draw(shot, region, &mut prepared, &report))?;
+            let Some((picture, mut summary)) = drawn else { break };
+            if let Some(animation) = &mut animation {
+                add_to(&mut summary.milliseconds.encode, || animation.add(&picture))?;
+            }
+            summaries.push(summary);
+        }
+        Ok(summaries)
+    }
+
+    /// The region that was asked for, else the least that fits every surface, so that the camera stands still where it may.
+    fn region(&mut self) -> Result<Region, Failure> {
+        if let Some(region) = self.region {
+            return Ok(region);
+        }
+        let mut fitted: Option<Region> = None;
+        let mut before: Option<Arc<Subject>> = None;
+        for Shot { subject, phases, .. } in &mut self.shots {
+            if before.as_ref().is_some_and(|before| Arc::ptr_eq(before, subject)) {
+                continue;
+            }
+            add_to(&mut phases.compile, || subject.surface.compile(Kernel::ValueEnclosures))?;
+            let region = add_to(&mut phases.preprocess, || region(None, &subject.surface))?;
+            let hull = fitted.map_or(Ok(region), |fitted| fitted.hull(&region));
+            fitted = Some(hull.expect("regions that are fitted are bounded"));
+            before = Some(Arc::clone(subject));
+        }
+        Ok(fitted.expect("there is a picture to be drawn"))
+    }
+
+    /// Draws a picture, writes its files and says what it took. `None` when work is stopped before anything is finished.
+    fn draw(
+        &self,
+        shot: Shot,
+        region: Region,
+        prepared: &mut Option<Prepared>,
+        progress: &(dyn Fn(u64, u64) + Sync),
+    ) -> Result<Option<(Picture, Summary)>, Failure> {
+        let Shot { subject, camera: flags, files, frame, mut phases } = shot;
+        let Subject { surface, operations_before, plan } = &*subject;
+        let camera = camera(&flags, &region, self.drawn)?;
+        let mut counters = Counters::default();
+        let known = prepared.take().filter(|known| Arc::ptr_eq(&known.subject, &subject));
+        let kernels_before = if known.is_some() { kernels_compiled(surface) } else { 0 };
+        let known = match known {
+            Some(known) => known,
+            None => {
+                add_to(&mut phases.compile, || plan.compile(surface))?;
+                let tracer = add_to(&mut phases.preprocess, || plan.tracer(surface, region));
+                let tracer = match tracer {
+                    Err(GridError::Stopped) => return Ok(None),
+                    tracer => tracer?,
+                };
+                counters += tracer.preprocessing();
+                Prepared { subject: Arc::clone(&subject), tracer }
+            }
+        };
+        let shading = Shading::new(&camera, self.shows_status);
+        let tracer = &*prepared.insert(known).tracer;
+        let scene = Scene { plan, surface, tracer, camera: &camera, shading: &shading };
+        self.interruption.begin_work();
+        let mut picture = render(&scene, self.drawn, progress)?;
+        if picture.counts.unfinished == self.drawn.pixels() as u64 {
+            return Ok(None);
+        }
+        if plan.runs(Pass::Smooth) {
+            add_to(&mut phases.shade, || self.smoothing.finish(&mut picture));
+        }
+        phases.trace += 1e3 * picture.trace_seconds;
+        phases.shade += 1e3 * picture.shade_seconds;
+        counters += picture.counters;
+        add_to(&mut phases.encode, || files.write(&picture))?;
+        let summary = Summary {
+            files: files.names(),
+            frame,
+            width: picture.size.width(),
+            height: picture.size.height(),
+            box_min: region.min().to_array(),
+            box_max: region.max().to_array(),
+            method: plan.method().name(),
+            engine: self.engine.name(),
+            threads: self.threads.current_num_threads(),
+            operations: surface.program().operations(),
+            gradient_operations: plan
+                .takes_gradient()
+                .then(|| surface.program_of(Kernel::Gradients).operations()),
+            plan: PlanReport::new(plan, surface, *operations_before)
+                .after(kernels_compiled(surface) - kernels_before),
+            pixels: picture.counts,
+            counters,
+            milliseconds: phases,
+        };
+        Ok(Some((picture, summary)))
+    }
+}
