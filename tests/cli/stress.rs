@@ -44,9 +44,14 @@ fn sampling_is_found_out() {
 #[test]
 fn one_case_is_shown_in_a_table_and_written_to_files() {
     let case = Case::new();
-    let arguments = ["stress", "--case", "double_sphere", "--size", "8x8", "--json", "out.json"];
+    let arguments =
+        ["stress", "--case", "double_sphere", "--size", "8x8", "--json", "out.json", "--markdown", "out.md"];
     let table = case.run(&arguments).exits(0).stdout();
     assert!(table.contains("multiple: ") && table.contains("  double_sphere"), "{table}");
-    assert_eq!(case.names(), ["out.json"]);
+    assert_eq!(case.names(), ["out.json", "out.md"]);
+    let document = String::from_utf8(case.content("out.md")).unwrap();
+    let is_open =
+        |line: &str| line.starts_with("| `double_sphere` | ") && line.contains(" | a root of even order ");
+    assert_eq!(document.lines().filter(|line| is_open(line)).count(), 1, "{document}");
     case.run(&["stress", "--case", "nothing"]).exits(2).mentions("no case of the suite is called nothing");
 }

@@ -13,12 +13,14 @@ const FALSE_HIT: [u8; 3] = [220, 30, 30];
 const MISSED_ROOT: [u8; 3] = [250, 200, 0];
 
 const HEAD: &str = "<!DOCTYPE html>
-<html lang=\"en\"><meta charset=\"utf-8\"><title>iso stress</title>
+<html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\"><title>iso stress</title>
 <style>
-body { font: 15px/1.4 system-ui, sans-serif; margin: 2em auto; max-width: 60em; color: #222 }
+body { font: 15px/1.4 system-ui, sans-serif; margin: 2em auto; padding: 0 1em; max-width: 60em; color: #222 }
 h2 { margin-top: 2em } h3 { margin-bottom: 0 } code { overflow-wrap: anywhere }
-figure { display: inline-block; margin: .5em 1em .5em 0 } figcaption { font-size: 85%; color: #555 }
-img { width: 12em; image-rendering: pixelated; border: 1px solid #ccc }
+.methods { display: grid; grid-template-columns: repeat(4, 1fr); gap: 1em }
+@media (max-width: 40em) { .methods { grid-template-columns: 1fr 1fr } }
+figure { margin: 0 } figcaption { font-size: 85%; color: #555 }
+img { box-sizing: border-box; width: 100%; image-rendering: pixelated; border: 1px solid #ccc }
 .broken { color: #b00 }
 </style>
 <h1>Hard cases</h1>
@@ -45,12 +47,12 @@ fn write_case(writer: &mut dyn Write, case: &Measured) -> io::Result<()> {
     for problem in &case.broken {
         writeln!(writer, "<br><span class=\"broken\">Broken: {}</span>", escaped(problem))?;
     }
-    writeln!(writer, "</p>")?;
+    writeln!(writer, "</p><div class=\"methods\">")?;
     for ((method, answers, verdicts), run) in case.view.methods.iter().zip(case.native()) {
         let picture = thumbnail(&case.view, answers, verdicts).map_err(io::Error::other)?;
         writeln!(
             writer,
-            "<figure><img alt=\"\" src=\"{}\"><figcaption>{method}: {} wrong, {} missed, {} open<br>\
+            "<figure><img alt=\"\" src=\"{}\"><figcaption>{method}<br>{} wrong, {} missed, {} open<br>\
              {:.1} ms</figcaption></figure>",
             picture,
             run.wrong,
@@ -59,7 +61,7 @@ fn write_case(writer: &mut dyn Write, case: &Measured) -> io::Result<()> {
             run.milliseconds,
         )?;
     }
-    Ok(())
+    writeln!(writer, "</div>")
 }
 
 /// The address of the picture, wrong answers painted over.

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use super::shapes::{HalfSpace, Shape};
 
 /// The families with their files, in the order of reports.
-const FAMILIES: [(&str, &str); 19] = [
+const FAMILIES: [(&str, &str); 22] = [
     ("steep", include_str!("../../../../testdata/stability/steep.toml")),
     ("scale", include_str!("../../../../testdata/stability/scale.toml")),
     ("degree", include_str!("../../../../testdata/stability/degree.toml")),
@@ -22,6 +22,9 @@ const FAMILIES: [(&str, &str); 19] = [
     ("domain", include_str!("../../../../testdata/stability/domain.toml")),
     ("indeterminate", include_str!("../../../../testdata/stability/indeterminate.toml")),
     ("extremes", include_str!("../../../../testdata/stability/extremes.toml")),
+    ("iteration", include_str!("../../../../testdata/stability/iteration.toml")),
+    ("powers", include_str!("../../../../testdata/stability/powers.toml")),
+    ("classic", include_str!("../../../../testdata/stability/classic.toml")),
     ("constants", include_str!("../../../../testdata/stability/constants.toml")),
     ("missing", include_str!("../../../../testdata/stability/missing.toml")),
     ("empty", include_str!("../../../../testdata/stability/empty.toml")),
