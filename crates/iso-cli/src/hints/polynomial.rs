@@ -45,17 +45,20 @@ struct Term {
 /// The hints for the largest parts that are polynomials written out.
 pub(super) fn hints(parts: &Parts<'_>) -> Vec<(NodeId, Hint)> {
     let forms = forms(parts);
-    let mut is_largest = vec![true; forms.len()];
-    for (id, node) in parts.0.iter() {
-        for operand in node.operands() {
-            let pair = (forms[id.index()], forms[operand.index()]);
-            if let (Form::Sum { base, .. }, Form::Sum { base: part, .. }) = pair {
-                is_largest[operand.index()] &= part != base;
-            }
+    let mut hints = Vec::new();
+    let mut is_covered = vec![false; forms.len()];
+    for (id, node) in parts.0.iter().rev() {
+        if !matches!(forms[id.index()], Form::Sum { .. }) {
+            continue;
         }
+        if !is_covered[id.index()] {
+            // What is no hint as a whole, as an equation with constants on both sides, may hold one.
+            let Some(hint) = hint(parts, &forms, id) else { continue };
+            hints.push((id, hint));
+        }
+        node.operands().iter().for_each(|operand| is_covered[operand.index()] = true);
     }
-    let largest = parts.0.iter().filter(|(id, _)| is_largest[id.index()]);
-    largest.filter_map(|(id, _)| Some((id, hint(parts, &forms, id)?))).collect()
+    hints
 }
 
 /// What every node is.

@@ -59,6 +59,13 @@ fn forms_that_lose_digits_are_found() {
     }
 }
 
+/// As a whole, left side minus right side, it has two constants: nobody wrote that polynomial.
+#[test]
+fn an_equation_with_constants_on_both_sides_holds_a_polynomial() {
+    let [hint] = &hints(&program("x^3 - 3*x^2 + 3*x - 1 = 0.125"))[..] else { panic!("one hint") };
+    assert_eq!(hint.written, "x^3 - 3*x^2 + 3*x - 1");
+}
+
 #[test]
 fn what_is_offered_is_equal() {
     let mut random = Random::new(1);
