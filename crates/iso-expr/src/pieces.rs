@@ -6,7 +6,7 @@
 //! on the box, wherever it is defined there, lie in the union of all pieces. This is the arithmetic of unions of
 //! intervals (Hansen and Walster, Global Optimization Using Interval Analysis, 2004, chapter 4).
 
-use crate::{Decorated, Decoration, Extension, Interval, Node, NodeId, Operation, Program};
+use crate::{Decorated, Decoration, Interval, Node, NodeId, Operation, Program};
 
 /// The pieces of a program's first output over a box, one for each way through its branches. Their number can grow
 /// exponentially with the number of branching steps: take no more than you can pay for, each is one evaluation.
@@ -104,8 +104,8 @@ impl Fork {
             | Operation::Truncate
             | Operation::Less
             | Operation::LessOrEqual
-            | Operation::Equal => self.step(plain(operation, a, b, c)),
-            _ => plain(operation, a, b, c),
+            | Operation::Equal => self.step(operation.extension().of([a, b, c])),
+            _ => operation.extension().of([a, b, c]),
         }
     }
 
@@ -178,7 +178,7 @@ impl Fork {
     fn select(&mut self, condition: Decorated, then: Decorated, otherwise: Decorated) -> Decorated {
         let Interval { lo, hi } = condition.interval;
         if lo == hi || !condition.interval.contains_zero() {
-            return plain(Operation::Select, condition, then, otherwise);
+            return Operation::Select.extension().of([condition, then, otherwise]);
         }
         [then, otherwise][self.choose(2)]
     }
@@ -189,21 +189,12 @@ fn common(interval: Interval) -> Decorated {
     Decorated { interval, decoration: Decoration::Common }
 }
 
-/// The plain interval extension.
-fn plain(operation: Operation, a: Decorated, b: Decorated, c: Decorated) -> Decorated {
-    match operation.extension() {
-        Extension::Unary(extension) => extension(a),
-        Extension::Binary(extension) => extension(a, b),
-        Extension::Ternary(extension) => extension(a, b, c),
-    }
-}
-
 fn unary(operation: Operation, a: Decorated) -> Decorated {
-    plain(operation, a, a, a)
+    operation.extension().of([a; 3])
 }
 
 fn binary(operation: Operation, a: Decorated, b: Decorated) -> Decorated {
-    plain(operation, a, b, b)
+    operation.extension().of([a, b, b])
 }
 
 #[cfg(test)]

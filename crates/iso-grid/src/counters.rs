@@ -17,6 +17,8 @@ pub struct Counters {
     pub gradient_evaluations: u64,
     /// Enclosures of F, or of F and its gradient, over boxes.
     pub box_evaluations: u64,
+    /// Operations of formulas that were proven with, at points and over boxes, each as often as it was evaluated.
+    pub operations: u64,
     /// Cells that rays walked through.
     pub steps: u64,
     /// Cells that were classified.
@@ -37,6 +39,7 @@ impl std::ops::AddAssign for Counters {
         self.trace_evaluations += other.trace_evaluations;
         self.gradient_evaluations += other.gradient_evaluations;
         self.box_evaluations += other.box_evaluations;
+        self.operations += other.operations;
         self.steps += other.steps;
         self.cells += other.cells;
         self.existence_cells += other.existence_cells;

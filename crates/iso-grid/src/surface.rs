@@ -2,19 +2,25 @@
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use iso_expr::{BatchKernel, BoxKernel, CompileError, Engine, Program};
+use iso_expr::{BatchKernel, BoxKernel, CompileError, Engine, Interval, Program};
 
 use crate::certified::Cells;
 use crate::{Region, Stop};
+
+/// Differentiating a program takes about so much longer than shortening its derivative on a box.
+const MUCH_SHORTER: usize = 6;
 
 /// The kernels of F − C and of its gradient. Each is compiled when it is first asked for, and F − C is differentiated when
 /// the first that takes its gradient is.
 ///
 /// The surface also keeps which cells of a region are proven to hold nothing of it, so that the certified method proves each
 /// of them once, however many pictures of that region are drawn.
+#[derive(Clone)]
 pub struct Surface {
     engine: Arc<dyn Engine>,
     value: Program,
+    /// The surface of which this is what is left on a box.
+    outer: Option<(Arc<Surface>, [Interval; 3])>,
     value_and_gradient: OnceLock<Program>,
     value_and_rounding: OnceLock<Program>,
     value_batch: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
@@ -22,9 +28,13 @@ pub struct Surface {
     value_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     gradient_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     rounding_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
-    cells: Mutex<Option<(Region, Arc<Cells>)>>,
+    /// Shared by copies.
+    cells: Arc<Mutex<Option<CellsOfRegion>>>,
     stop: Stop,
 }
+
+/// What is known of the cells of a region.
+type CellsOfRegion = (Region, Arc<Cells>);
 
 /// One of a surface's kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +52,10 @@ pub enum Kernel {
 }
 
 impl Kernel {
+    /// Those that rays are followed with by the method that proves what it says.
+    pub const OF_PROOFS: &'static [Self] =
+        &[Self::Values, Self::ValueEnclosures, Self::GradientEnclosures, Self::RoundingBounds];
+
     /// All kernels.
     pub const ALL: [Self; 5] = [
         Self::Values,
@@ -73,6 +87,7 @@ impl Surface {
         Self {
             engine,
             value,
+            outer: None,
             value_and_gradient: OnceLock::new(),
             value_and_rounding: OnceLock::new(),
             value_batch: OnceLock::new(),
@@ -80,7 +95,7 @@ impl Surface {
             value_boxes: OnceLock::new(),
             gradient_boxes: OnceLock::new(),
             rounding_boxes: OnceLock::new(),
-            cells: Mutex::new(None),
+            cells: Arc::default(),
             stop: Stop::default(),
         }
     }
@@ -109,6 +124,14 @@ impl Surface {
         }
     }
 
+    /// The same surface on a box, where F comes to something [shorter](Program::shortened); `None` where it does not. Its kernels
+    /// are made for few runs.
+    pub(crate) fn shortened(self: &Arc<Self>, domain: [Interval; 3]) -> Option<Self> {
+        let value = self.value.shortened(domain)?;
+        let outer = Some((Arc::clone(self), domain));
+        Some(Self { outer, ..Self::new(self.engine.for_few_runs(), value).stopped_by(self.stop.clone()) })
+    }
+
     /// The program of F − C.
     pub fn program(&self) -> &Program {
         &self.value
@@ -118,12 +141,23 @@ impl Surface {
     pub fn program_of(&self, kernel: Kernel) -> &Program {
         match kernel {
             Kernel::Values | Kernel::ValueEnclosures => &self.value,
-            Kernel::Gradients | Kernel::GradientEnclosures => {
-                self.value_and_gradient.get_or_init(|| self.value.with_gradient().simplified())
+            Kernel::Gradients | Kernel::GradientEnclosures => self
+                .value_and_gradient
+                .get_or_init(|| self.derived(kernel, || self.value.with_gradient().simplified())),
+            Kernel::RoundingBounds => self
+                .value_and_rounding
+                .get_or_init(|| self.derived(kernel, || self.value.with_rounding().simplified())),
+        }
+    }
+
+    /// The program of a kernel: what that of the larger box comes to, or made anew, whichever takes less time.
+    fn derived(&self, kernel: Kernel, make: impl FnOnce() -> Program) -> Program {
+        match &self.outer {
+            Some((outer, domain)) if outer.value.nodes().len() < MUCH_SHORTER * self.value.nodes().len() => {
+                let program = outer.program_of(kernel);
+                program.shortened_over_boxes(*domain).unwrap_or_else(|| program.clone())
             }
-            Kernel::RoundingBounds => {
-                self.value_and_rounding.get_or_init(|| self.value.with_rounding().simplified())
-            }
+            _ => make(),
         }
     }
 

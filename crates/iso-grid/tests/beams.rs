@@ -8,7 +8,7 @@ use iso_expr::{Ast, Interpreter, Program};
 use iso_grid::{Certified, Hit, Outcome, Ray, Region, Span, Surface, Tracer, Workspace};
 
 /// Formulas, half sides of their regions, and what they are tried for.
-const SCENES: [(&str, f64, &str); 18] = [
+const SCENES: [(&str, f64, &str); 20] = [
     ("(x^2+y^2-1)^2 + 4z^2 + 0.5x - 0.2", 1.5, "a classic"),
     ("x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8", 2.6, "parts in front of each other"),
     ("sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)", 5.0, "cut by the region's faces"),
@@ -27,7 +27,17 @@ const SCENES: [(&str, f64, &str); 18] = [
     ("z", 1.5, "a plane along parallel rays"),
     ("0x", 1.5, "zero everywhere"),
     ("max(0, x^2+y^2+z^2-1)", 1.5, "a plateau"),
+    (BALLS, 1.6, "a union of balls"),
+    (BOX, 1.6, "a rounded box with a hole, smoothly blended with a ball"),
 ];
+
+/// Of six balls and a slab, few count anywhere.
+const BALLS: &str = "ball(a,b,c) := (x-a)^2+(y-b)^2+(z-c)^2 - 0.3; \
+    max(min(min(min(ball(1,0,0), ball(-1,0,0)), min(ball(0,1,0), ball(0,-1,0))), min(ball(0,0,1), ball(0,0,-1))), abs(z+0.1) - 1)";
+/// A distance, roots of zero and exponentials included.
+const BOX: &str = "d := sqrt(max(abs(x)-0.6,0)^2 + max(abs(y)-0.6,0)^2 + max(abs(z)-0.4,0)^2) - 0.1; \
+    b := sqrt((x-0.7)^2+y^2+(z-0.5)^2) - 0.4; \
+    max(-ln(exp(-9d) + exp(-9b))/9, 0.3 - sqrt(x^2+y^2))";
 
 fn certified(value: &Program, half_side: f64) -> Certified {
     let value = value.simplified();
@@ -176,5 +186,33 @@ fn unrelated_rays_may_be_called_a_tile() {
         rays[21].origin.x = strange;
         let outcomes = together(&tracer, &Tile { name: "strange", rays: rays.clone(), width: 8 });
         assert_eq!(outcomes, alone(&tracer, &rays), "{strange}");
+    }
+}
+
+#[test]
+fn shortened_formulas_prove_what_whole_ones_do() {
+    for (formula, half, name) in [SCENES[18], SCENES[19]] {
+        let value = read(formula);
+        let (shortened, whole) = (certified(&value, half), certified(&value, half).with_whole_formula());
+        for Tile { name: view, rays, width } in tiles(half, 48, 40) {
+            let trace = |tracer: &Certified| {
+                let (mut workspace, mut outcomes) = (Workspace::default(), vec![Outcome::Miss; rays.len()]);
+                tracer.trace_tile(&mut workspace, width, &rays, &mut outcomes);
+                (outcomes, workspace.counters.operations)
+            };
+            let ((short, fewer), (long, more)) = (trace(&shortened), trace(&whole));
+            let expected = if formula == BALLS { fewer < more } else { fewer <= more };
+            assert!(expected, "{name}, {view}: {fewer} operations instead of {more}");
+            for (ray, (short, long)) in rays.iter().zip(short.iter().zip(&long)) {
+                let agree = match (short, long) {
+                    (Outcome::Hit(a), Outcome::Hit(b)) => {
+                        a.bracket.start <= b.bracket.end && b.bracket.start <= a.bracket.end
+                    }
+                    (Outcome::Miss, Outcome::Miss) => true,
+                    (a, b) => std::mem::discriminant(a) == std::mem::discriminant(b),
+                };
+                assert!(agree, "{name}, {view}, {ray:?}: {short:?} and {long:?}");
+            }
+        }
     }
 }

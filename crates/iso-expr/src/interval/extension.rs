@@ -25,3 +25,15 @@ pub enum Extension {
     /// Of three operands.
     Ternary(fn(Decorated, Decorated, Decorated) -> Decorated),
 }
+
+impl Extension {
+    /// The enclosure of the operation on these operands, of which only as many as its arity count.
+    #[inline]
+    pub fn of(self, [a, b, c]: [Decorated; 3]) -> Decorated {
+        match self {
+            Self::Unary(extend) => extend(a),
+            Self::Binary(extend) => extend(a, b),
+            Self::Ternary(extend) => extend(a, b, c),
+        }
+    }
+}

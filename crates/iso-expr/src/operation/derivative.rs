@@ -3,6 +3,8 @@
 //! The rules are exact wherever the operation is differentiable. At a kink they give one of the one-sided derivatives or
 //! a value between them; at a jump they give the derivative of the pieces.
 
+mod share;
+
 use super::Operation;
 use crate::{Constant, Node, NodeId, Program};
 
@@ -224,8 +226,7 @@ pub(super) fn hypotenuse(chain: &mut Chain<'_>) -> Option<NodeId> {
 }
 
 pub(super) fn exp(chain: &mut Chain<'_>) -> Option<NodeId> {
-    let result = chain.result;
-    chain.times(|_, _| result)
+    chain.exponential_product(chain.result, chain.derivatives[0]?)
 }
 
 pub(super) fn exp2(chain: &mut Chain<'_>) -> Option<NodeId> {
@@ -242,7 +243,7 @@ pub(super) fn exp_m1(chain: &mut Chain<'_>) -> Option<NodeId> {
 }
 
 pub(super) fn ln(chain: &mut Chain<'_>) -> Option<NodeId> {
-    chain.over(|_, a| a)
+    Some(chain.relative(chain.derivatives[0]?, chain.operands[0]))
 }
 
 pub(super) fn log2(chain: &mut Chain<'_>) -> Option<NodeId> {

@@ -7,9 +7,10 @@ mod rebuild;
 #[cfg(any(test, feature = "random"))]
 pub(crate) mod reference;
 mod rounding;
+mod shorten;
 mod simplify;
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use crate::{Constant, Operation};
 
@@ -85,7 +86,8 @@ impl Node {
 #[derive(Clone, Debug, Default)]
 pub struct Program {
     nodes: Vec<Node>,
-    places: HashMap<Node, NodeId>,
+    /// Where each node is. Copies leave it empty until they are added to.
+    places: FxHashMap<Node, NodeId>,
     outputs: Vec<NodeId>,
 }
 
@@ -130,7 +132,7 @@ impl Program {
 
     /// Whether the argument along `axis` occurs. A simplified program holds nothing that its outputs do not need.
     pub fn takes(&self, axis: Axis) -> bool {
-        self.places.contains_key(&Node::Variable(axis))
+        self.nodes.contains(&Node::Variable(axis))
     }
 
     /// How many operations one evaluation takes.
@@ -185,6 +187,9 @@ impl Program {
     }
 
     fn intern(&mut self, node: Node) -> NodeId {
+        if self.places.len() < self.nodes.len() {
+            self.places = self.iter().map(|(id, node)| (*node, id)).collect();
+        }
         *self.places.entry(node).or_insert_with(|| {
             let id = u32::try_from(self.nodes.len()).expect("formulas are limited to far fewer nodes");
             self.nodes.push(node);

@@ -10,11 +10,10 @@ impl Program {
         let mut places = Vec::with_capacity(self.nodes.len());
         for (node, needed) in self.nodes.iter().zip(needed) {
             // What is not needed is never looked up, so that any place will do for it.
-            places.push(if needed {
-                pruned.intern(node.with_operands(|operand| places[operand.index()]))
-            } else {
-                NodeId(0)
-            });
+            places.push(NodeId(pruned.nodes.len() as u32));
+            if needed {
+                pruned.nodes.push(node.with_operands(|operand| places[operand.index()]));
+            }
         }
         pruned.outputs = self.outputs.iter().map(|output| places[output.index()]).collect();
         pruned
@@ -46,6 +45,7 @@ impl Program {
         mut build: impl FnMut(&mut Self, Node) -> NodeId,
     ) -> Vec<NodeId> {
         let mut places: Vec<NodeId> = Vec::with_capacity(other.nodes.len());
+        self.places.reserve(other.nodes.len());
         for node in &other.nodes {
             let node = node.with_operands(|operand| places[operand.index()]);
             places.push(build(self, node));

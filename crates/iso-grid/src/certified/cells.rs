@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicU16, Ordering};
 
-use iso_expr::{Decorated, Decoration, Interval, Program, Scratch};
+use iso_expr::{Decorated, Decoration, Interval, Scratch};
 
 use super::classify::free_of_zero;
 use super::kernels::{Bounds, Jet, Kernels};
@@ -87,7 +87,6 @@ impl Cells {
     pub(super) fn empty_parts(
         &self,
         kernels: &Kernels,
-        program: &Program,
         scratch: &mut Scratch,
         evaluations: &mut u64,
         cell: Cell,
@@ -97,7 +96,7 @@ impl Cells {
             return known;
         }
         let bounds = std::array::from_fn(|number| self.bounds(cell.part(number)));
-        let (empty, enclosed) = prove_empty(kernels, program, scratch, &bounds);
+        let (empty, enclosed) = prove_empty(kernels, scratch, &bounds);
         *evaluations += enclosed;
         let found =
             (0..PARTS).filter(|number| empty[*number]).fold(KNOWN, |found, number| found | 1 << number);
@@ -107,15 +106,10 @@ impl Cells {
 }
 
 /// Which of the boxes certainly hold no root, and how many enclosures that took.
-fn prove_empty(
-    kernels: &Kernels,
-    program: &Program,
-    scratch: &mut Scratch,
-    boxes: &[Bounds; PARTS],
-) -> ([bool; PARTS], u64) {
+fn prove_empty(kernels: &Kernels, scratch: &mut Scratch, boxes: &[Bounds; PARTS]) -> ([bool; PARTS], u64) {
     let jets = kernels.jets(scratch, boxes);
     let centers = boxes.map(|bounds| bounds.map(|side| Interval::point(side.midpoint())));
-    let at_centers = kernels.values(scratch, &centers);
+    let at_centers = kernels.enclosures(scratch, &centers);
     let mut enclosures = 2 * PARTS as u64;
     let empty = std::array::from_fn(|place| {
         let value = jets[place].value;
@@ -125,7 +119,7 @@ fn prove_empty(
         if value.decoration >= Decoration::Continuous {
             return free_of_zero(mean_value(&boxes[place], &jets[place], at_centers[place]));
         }
-        let mut pieces = program.pieces(boxes[place]);
+        let mut pieces = kernels.program().pieces(boxes[place]);
         let free = pieces.by_ref().take(PIECES).all(|piece| {
             enclosures += 1;
             free_of_zero(piece)

@@ -4,15 +4,19 @@ use iso_expr::interval::{round_down, round_up};
 use iso_expr::{Decorated, Decoration, Interval, Scratch};
 
 use super::kernels::{BATCH, Bounds, Jet, Kernels, NOTHING_KNOWN};
-use crate::{Ray, Span};
+use crate::{Kernel, Ray, Span};
 
 /// F along a ray. All enclosures hold for every real t of a stretch and every point o + t·d exactly.
 pub(super) struct Line<'a> {
     pub(super) kernels: &'a Kernels,
+    /// Kernels that hold on a part of the ray.
+    pub(super) local: &'a Kernels,
     pub(super) scratch: &'a mut Scratch,
     pub(super) ray: Ray,
     /// How many boxes were enclosed along this ray.
     pub(super) evaluations: u64,
+    /// How many operations that took.
+    pub(super) operations: u64,
 }
 
 /// F over a stretch of the ray, and its derivative by t.
@@ -23,12 +27,20 @@ pub(super) struct Course {
     pub(super) slope: Decorated,
 }
 
-impl Line<'_> {
+impl<'a> Line<'a> {
+    /// The shortest kernels that hold on all of the boxes.
+    pub(super) fn kernels_on(&self, boxes: &[Bounds]) -> &'a Kernels {
+        if boxes.iter().all(|bounds| self.local.cover(bounds)) { self.local } else { self.kernels }
+    }
+
     /// Encloses F over each of the stretches; what stands behind their number means nothing.
     pub(super) fn values(&mut self, stretches: &[Span]) -> [Decorated; BATCH] {
         self.evaluations += stretches.len() as u64;
         let boxes = self.boxes(stretches);
-        self.kernels.values(self.scratch, &boxes[..stretches.len()])
+        let boxes = &boxes[..stretches.len()];
+        let kernels = self.kernels_on(boxes);
+        self.operations += boxes.len() as u64 * kernels.operations(Kernel::ValueEnclosures);
+        kernels.enclosures(self.scratch, boxes)
     }
 
     /// Encloses F at `t`.
@@ -40,7 +52,7 @@ impl Line<'_> {
     pub(super) fn courses(&mut self, stretches: &[Span]) -> [Course; BATCH] {
         self.evaluations += stretches.len() as u64;
         let boxes = self.boxes(stretches);
-        let jets = self.kernels.jets(self.scratch, &boxes[..stretches.len()]);
+        let jets = self.jets(&boxes[..stretches.len()]);
         let mut courses = [Course { value: NOTHING_KNOWN, slope: NOTHING_KNOWN }; BATCH];
         for (course, Jet { value, gradient }) in courses.iter_mut().zip(jets).take(stretches.len()) {
             *course = Course { value, slope: self.slope(gradient) };
@@ -51,8 +63,14 @@ impl Line<'_> {
     /// Encloses F and its slope over a stretch.
     pub(super) fn course(&mut self, stretch: Span) -> Course {
         self.evaluations += 1;
-        let [Jet { value, gradient }, ..] = self.kernels.jets(self.scratch, &[self.bounds(stretch)]);
+        let [Jet { value, gradient }, ..] = self.jets(&[self.bounds(stretch)]);
         Course { value, slope: self.slope(gradient) }
+    }
+
+    fn jets(&mut self, boxes: &[Bounds]) -> [Jet; BATCH] {
+        let kernels = self.kernels_on(boxes);
+        self.operations += boxes.len() as u64 * kernels.operations(Kernel::GradientEnclosures);
+        kernels.jets(self.scratch, boxes)
     }
 
     /// The box around a stretch of the ray.

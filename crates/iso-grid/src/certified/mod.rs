@@ -8,6 +8,7 @@ mod isolate;
 mod kernels;
 mod line;
 mod newton;
+mod places;
 mod polynomial;
 mod search;
 mod side;
@@ -15,7 +16,7 @@ mod walk;
 
 use std::sync::Arc;
 
-use iso_expr::{BatchKernel, CompileError, Program};
+use iso_expr::CompileError;
 
 use crate::{Counters, Outcome, Ray, Region, Span, Stop, Surface, Tracer, Workspace};
 pub(crate) use beams::Pixel;
@@ -27,6 +28,7 @@ pub(crate) use isolate::Expansion;
 use isolate::Isolation;
 use kernels::Kernels;
 use line::Line;
+use places::Places;
 use polynomial::Polynomial;
 pub(crate) use search::Ahead;
 use search::{Search, WORK_LIMIT, Way};
@@ -56,9 +58,8 @@ use walk::Walk;
 ///
 /// The rays of a tile share their proofs as far as they go: see [`Tracer::trace_tile`].
 pub struct Certified {
-    kernels: Kernels,
-    value_batch: Arc<dyn BatchKernel>,
-    program: Program,
+    kernels: Arc<Kernels>,
+    places: Places,
     polynomial: Option<Polynomial>,
     region: Region,
     cells: Arc<Cells>,
@@ -78,20 +79,22 @@ impl Certified {
     /// # Errors
     /// When the engine cannot compile the surface.
     pub fn new(surface: &Surface, region: Region) -> Result<Self, CompileError> {
+        let kernels = Arc::new(Kernels::of(surface)?);
         Ok(Self {
-            kernels: Kernels {
-                values: Arc::clone(surface.value_enclosures()?),
-                gradients: Arc::clone(surface.gradient_enclosures()?),
-                rounding: Arc::clone(surface.rounding_bounds()?),
-            },
-            value_batch: Arc::clone(surface.values()?),
-            program: surface.program().clone(),
+            places: Places::new(&kernels, &region),
+            kernels,
             polynomial: Polynomial::of(surface.program()),
             cells: surface.cells(&region),
             region,
             accuracy: Self::ACCURACY,
             stop: surface.stop().clone(),
         })
+    }
+
+    /// The same without leaving out what boxes decide of the formula, to compare with: what is proven is the same, and takes
+    /// longer where the formula has many branches.
+    pub fn with_whole_formula(self) -> Self {
+        Self { places: self.places.ignored(), ..self }
     }
 
     /// The same with another accuracy: coarser is faster, what is said stays proven.
@@ -101,15 +104,22 @@ impl Certified {
 }
 
 impl Certified {
-    /// How the search along a ray ends, if it begins with `entry`, a stretch in a cell, and goes no further.
+    /// How the search along a ray ends, if it begins with `entry`, a stretch in a cell, and goes no further. `local` are
+    /// kernels that hold thereabouts.
     ///
     /// Most rays are decided soon, from cell to cell. Those that are not get a second chance where F is a polynomial: its
     /// expansion along the ray takes longer than an easy ray does, but tells apart what boxes cannot.
-    fn search(&self, workspace: &mut Workspace, ray: Ray, clip: Clip, entry: Entry) -> Outcome {
+    fn search(
+        &self,
+        workspace: &mut Workspace,
+        ray: Ray,
+        clip: Clip,
+        entry: Entry,
+        local: &Kernels,
+    ) -> Outcome {
         let Workspace { scratch, counters, ahead, entries, expansion, .. } = workspace;
         let mut search = Search {
-            line: Line { kernels: &self.kernels, scratch, ray, evaluations: 0 },
-            program: &self.program,
+            line: Line { kernels: &self.kernels, local, scratch, ray, evaluations: 0, operations: 0 },
             accuracy: self.accuracy,
             stop: &self.stop,
             clip,
@@ -127,6 +137,7 @@ impl Certified {
         }
         search.way.tally(counters);
         counters.box_evaluations += search.line.evaluations;
+        counters.operations += search.line.operations;
         end.unwrap_or_else(Outcome::Undecided)
     }
 }
@@ -141,7 +152,7 @@ impl Tracer for Certified {
                 continue;
             };
             workspace.counters.rays_in_region += 1;
-            *outcome = self.search(workspace, *ray, clip, (Cell::REGION, clip.outer));
+            *outcome = self.search(workspace, *ray, clip, (Cell::REGION, clip.outer), &self.kernels);
         }
     }
 

@@ -1,7 +1,7 @@
 //! The search for the first root along a ray, front to back.
 
+use iso_expr::Decoration;
 use iso_expr::interval::{round_down, round_up};
-use iso_expr::{Decoration, Program};
 
 use super::classify::{Finding, classify, free_of_zero};
 use super::clip::Clip;
@@ -31,7 +31,6 @@ const WIDENINGS: u32 = 12;
 /// The search along one ray.
 pub(super) struct Search<'a> {
     pub(super) line: Line<'a>,
-    pub(super) program: &'a Program,
     pub(super) accuracy: f64,
     pub(super) stop: &'a Stop,
     pub(super) clip: Clip,
@@ -102,7 +101,7 @@ impl Search<'_> {
     fn next(&mut self) -> Option<Ahead> {
         while self.ahead.is_empty() {
             let Span { start, end } = match &mut self.way {
-                Way::Cells(walk) => walk.next(self.line.kernels, self.program, self.line.scratch)?,
+                Way::Cells(walk) => walk.next(self.line.kernels, self.line.scratch)?,
                 Way::Pieces(isolation) => isolation.next()?,
             };
             self.examine(&[start, end]);
@@ -218,7 +217,8 @@ impl Search<'_> {
 
     /// Whether F is never zero on a stretch, seen piece by piece.
     fn pieces_are_free(&mut self, stretch: Span) -> bool {
-        for (place, piece) in self.program.pieces(self.line.bounds(stretch)).enumerate() {
+        let bounds = self.line.bounds(stretch);
+        for (place, piece) in self.line.kernels_on(&[bounds]).program().pieces(bounds).enumerate() {
             self.line.evaluations += 1;
             if place == PIECES || !free_of_zero(piece) {
                 return false;

@@ -1,8 +1,8 @@
 //! The way of a ray through the cells that may hold roots.
 
 use glam::DVec3;
+use iso_expr::Scratch;
 use iso_expr::interval::{round_down, round_up};
-use iso_expr::{Program, Scratch};
 
 use super::cells::{Cell, Cells, DEPTH, PARTS};
 use super::kernels::Kernels;
@@ -41,18 +41,13 @@ impl<'a> Walk<'a> {
 
     /// A stretch that holds the ray's way through the next of the smallest cells that is not empty. All between it and the
     /// one before is free of roots.
-    pub(super) fn next(
-        &mut self,
-        kernels: &Kernels,
-        program: &Program,
-        scratch: &mut Scratch,
-    ) -> Option<Span> {
+    pub(super) fn next(&mut self, kernels: &Kernels, scratch: &mut Scratch) -> Option<Span> {
         while let Some((cell, stretch)) = self.pending.pop() {
             self.steps += 1;
             if cell.depth == DEPTH {
                 return Some(stretch);
             }
-            let empty = self.cells.empty_parts(kernels, program, scratch, &mut self.evaluations, cell);
+            let empty = self.cells.empty_parts(kernels, scratch, &mut self.evaluations, cell);
             self.enter(cell, stretch, empty);
         }
         None

@@ -6,7 +6,7 @@ mod shape;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::{Decorated, Decoration, Extension, Interval};
+use super::{Decorated, Decoration, Interval};
 use crate::random::Random;
 use crate::{Operation, Value};
 
@@ -14,12 +14,8 @@ use crate::{Operation, Value};
 type Box3 = [Decorated; 3];
 type Point3 = [f64; 3];
 
-fn extend(operation: Operation, [a, b, c]: Box3) -> Decorated {
-    match operation.extension() {
-        Extension::Unary(extend) => extend(a),
-        Extension::Binary(extend) => extend(a, b),
-        Extension::Ternary(extend) => extend(a, b, c),
-    }
+fn extend(operation: Operation, operands: Box3) -> Decorated {
+    operation.extension().of(operands)
 }
 
 /// The operation's value: the real one, rounded to nearest.

@@ -91,3 +91,37 @@ fn derivatives_of_one_operand_twice_agree_with_difference_quotients() {
         }
     }
 }
+
+/// Smooth minima of distances: their derivatives are means of those of the distances.
+const SMOOTH_MINIMA: [&str; 3] = [
+    "-ln(exp(-8x) + exp(-8*(y - z)))/8",
+    "-ln(exp(-3*sqrt(x^2 + y^2 + 1)) + exp(-3*hypot(y, z)) + exp(-3*(x + 2)))/3",
+    "-ln(exp(-5*(-ln(exp(-5x) + exp(-5y))/5)) + exp(-5z) + 2)/5",
+];
+
+fn program(formula: &str) -> Program {
+    crate::Ast::parse(formula).unwrap().lower(&[]).unwrap().program().clone()
+}
+
+#[test]
+fn derivatives_of_smooth_minima_agree_with_difference_quotients() {
+    let mut random = Random::new(4);
+    for formula in SMOOTH_MINIMA {
+        let share = check(&program(formula), &mut random);
+        assert!(share > 0.3, "{formula} was compared at {share} of the points");
+    }
+}
+
+#[test]
+fn derivatives_of_smooth_minima_stay_bounded_over_wide_boxes() {
+    let domain = [crate::Interval::new(-3.0, 3.0).unwrap(); 3];
+    for formula in [SMOOTH_MINIMA[0], SMOOTH_MINIMA[2]] {
+        let gradient = program(formula).with_gradient();
+        for partial in &gradient.outputs()[1..] {
+            let mut slope = gradient.clone();
+            slope.set_outputs(vec![*partial]);
+            let range = slope.pruned().pieces(domain).next().unwrap();
+            assert!(range.magnitude() <= 1.0 + 1e-12, "{formula}: {range}");
+        }
+    }
+}

@@ -1,10 +1,14 @@
 //! Operations on constants.
 
-use crate::{Constant, Decorated, Decoration, Extension, Node, NodeId, Operation, Program, Value};
+use crate::{Constant, Decorated, Decoration, Node, NodeId, Operation, Program, Value};
 
 /// The constant that `operation` gives when all `operands` are constants. None when it is undefined, or its double is not
 /// finite, for then both are best left to evaluation.
-pub(super) fn folded(program: &Program, operation: Operation, operands: &[NodeId]) -> Option<Constant> {
+pub(in crate::program) fn folded(
+    program: &Program,
+    operation: Operation,
+    operands: &[NodeId],
+) -> Option<Constant> {
     let mut constants = [Constant::exact(0.0); 3];
     for (constant, operand) in constants.iter_mut().zip(operands) {
         let Node::Constant(operand) = program.node(*operand) else { return None };
@@ -22,12 +26,8 @@ pub(super) fn folded(program: &Program, operation: Operation, operands: &[NodeId
     if constants.iter().all(|constant| constant.is_exact()) && is_exact(operation, a, b, value) {
         return Some(Constant::exact(value));
     }
-    let [a, b, c] = constants.map(|constant| Decorated::constant(constant.enclosure()));
-    let Decorated { interval, decoration } = match operation.extension() {
-        Extension::Unary(extend) => extend(a),
-        Extension::Binary(extend) => extend(a, b),
-        Extension::Ternary(extend) => extend(a, b, c),
-    };
+    let enclosures = constants.map(|constant| Decorated::constant(constant.enclosure()));
+    let Decorated { interval, decoration } = operation.extension().of(enclosures);
     // Whether it is continuous in its operands does not matter, as they do not move.
     let is_number = decoration >= Decoration::Defined && interval.lo.is_finite() && interval.hi.is_finite();
     is_number.then(|| Constant::folded(value, interval))

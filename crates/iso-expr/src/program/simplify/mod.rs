@@ -11,6 +11,7 @@ mod tests;
 
 use super::{Node, NodeId, Program};
 use crate::Operation;
+pub(super) use fold::folded;
 
 impl Program {
     /// A program that computes the same outputs, to the last bit on every input, in fewer or cheaper operations.
@@ -27,7 +28,7 @@ impl Program {
 
     /// The product of two constants, as a constant where it is finite.
     pub(crate) fn product_of_constants(&mut self, a: NodeId, b: NodeId) -> NodeId {
-        match fold::folded(self, Operation::Multiply, &[a, b]) {
+        match folded(self, Operation::Multiply, &[a, b]) {
             Some(product) => self.constant(product),
             None => self.apply(Operation::Multiply, &[a, b]),
         }
@@ -45,7 +46,7 @@ impl Simplifier<'_> {
     /// Rules call this again for what they build. That ends soon, whatever the program's size: every rule has fewer
     /// operations or signs on its right than on its left, or moves on towards an operation that no rule leads back from.
     fn apply(&mut self, operation: Operation, operands: &[NodeId]) -> NodeId {
-        if let Some(constant) = fold::folded(self.program, operation, operands) {
+        if let Some(constant) = folded(self.program, operation, operands) {
             return self.program.constant(constant);
         }
         let mut ordered = [operands[0]; 3];

@@ -1,19 +1,26 @@
 //! The roots of single rays of a beam along which F is monotone.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use iso_expr::interval::{round_down, round_up};
-use iso_expr::{Decoration, Program};
+use iso_expr::{Decoration, Interval, Program};
 
+use super::area::Area;
 use super::form::{Form, ROUNDING};
 use super::subdivision::{Part, Subdivision};
 use crate::certified::clip::Clip;
-use crate::{Hit, Outcome, Span, Workspace};
+use crate::certified::kernels::Kernels;
+use crate::{Hit, Kernel, Outcome, Span, Workspace};
 
 /// How many values of F a ray is given at most before it is searched for its own.
 const STEPS: usize = 10;
 
 /// An enclosure of a root no wider than this many times what rounding of F alone makes it is as narrow as it gets.
 const ROUNDINGS: f64 = 2.0;
+
+/// Shorter kernels are made for a part when it has so many rays.
+const MANY: usize = 64;
 
 /// A ray that may have a root.
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +64,9 @@ enum Verdict {
 
 impl Subdivision<'_> {
     /// Ends or goes on with each ray of a part by its root there.
-    pub(super) fn follow_each(&mut self, part: &Part, form: &Form) {
+    pub(super) fn follow_each(&mut self, mut part: Part, form: &Form) {
+        part.kernels = self.kernels_for(&part, form);
+        let part = &part;
         let Some(sight) = self.sight(part, form) else { return self.search_each(part) };
         let mut pixels = std::mem::take(&mut self.workspace.pixels);
         pixels.clear();
@@ -66,21 +75,33 @@ impl Subdivision<'_> {
             if pixels.is_empty() {
                 break;
             }
-            self.approach(&mut pixels, &sight, step == STEPS);
+            self.approach(part, &mut pixels, &sight, step == STEPS);
         }
         self.workspace.pixels = pixels;
+    }
+
+    /// The kernels for the rays of a part: shorter ones made for this part alone, where so many rays may gain.
+    fn kernels_for(&self, part: &Part, form: &Form) -> Arc<Kernels> {
+        let Area { width, height, .. } = part.beam.area;
+        let kernels = &part.kernels;
+        if !kernels.may_be_shortened() || width * height < MANY {
+            return Arc::clone(kernels);
+        }
+        let bounds = part.beam.bounds(form.reach, &self.certified.region).map(|(lo, hi)| outwards(lo, hi));
+        let shortened = bounds.and_then(|bounds| kernels.shortened(bounds));
+        shortened.map_or_else(|| Arc::clone(kernels), Arc::new)
     }
 
     /// What values say over a part. `None` when rounding is not bounded there.
     fn sight(&mut self, part: &Part, form: &Form) -> Option<Sight> {
         let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
         let (lo, hi) = part.beam.bounds(form.reach, &self.certified.region)?;
-        // Points are computed by two roundings, and so stay in the box when it is two doubles larger at each side.
-        let outward = |end: DVec3, round: fn(f64) -> f64| end.to_array().map(|end| round(round(end)));
+        let sides = outwards(lo, hi);
         boxes.clear();
-        boxes.push(outward(lo, round_down).into(), outward(hi, round_up).into());
-        boxes.evaluate(&*self.certified.kernels.rounding, scratch, 5);
+        boxes.push(sides.map(|side| side.lo).into(), sides.map(|side| side.hi).into());
+        boxes.evaluate(part.kernels.rounding(), scratch, 5);
         counters.box_evaluations += 1;
+        counters.operations += part.kernels.operations(Kernel::RoundingBounds);
         let decoration = |output| boxes.decorated(output, 0).decoration;
         let is_known = decoration(0) == Decoration::Common
             && (1..5).all(|output| decoration(output) >= Decoration::Defined);
@@ -124,7 +145,7 @@ impl Subdivision<'_> {
                     continue;
                 }
                 if reach.start > reach.end {
-                    self.search_one(place, wanted);
+                    self.search_one(place, wanted, &part.kernels);
                     continue;
                 }
                 let (across, along) = beam.area.offset(column, row);
@@ -136,12 +157,13 @@ impl Subdivision<'_> {
 
     /// Takes F at each pixel's t, and keeps the pixels that are nearer to their roots by that. The last time, those
     /// are searched each for its own.
-    fn approach(&mut self, pixels: &mut Vec<Pixel>, sight: &Sight, is_last: bool) {
+    fn approach(&mut self, part: &Part, pixels: &mut Vec<Pixel>, sight: &Sight, is_last: bool) {
         let Workspace { points, scratch, counters, .. } = &mut *self.workspace;
         points.clear();
         points.extend(pixels.iter().map(|pixel| self.bundle.rays[pixel.place].at(pixel.t)));
         counters.trace_evaluations += pixels.len() as u64;
-        let values = points.evaluate(&*self.certified.value_batch, scratch, 1);
+        counters.operations += pixels.len() as u64 * part.kernels.operations(Kernel::Values);
+        let values = points.evaluate(part.kernels.points(), scratch, 1);
         let mut lost = Vec::new();
         let mut kept = 0;
         for number in 0..pixels.len() {
@@ -161,7 +183,7 @@ impl Subdivision<'_> {
         }
         pixels.truncate(kept);
         for pixel in lost {
-            self.search_one(pixel.place, pixel.wanted);
+            self.search_one(pixel.place, pixel.wanted, &part.kernels);
         }
     }
 }
@@ -197,6 +219,12 @@ impl Pixel {
         (self.t, self.value, self.step) = (next, value, step);
         Verdict::Open
     }
+}
+
+/// The sides of a box in which the points of its rays lie, which are computed by two roundings: it is two doubles larger at each
+/// side.
+fn outwards(lo: DVec3, hi: DVec3) -> [Interval; 3] {
+    [0, 1, 2].map(|axis| Interval { lo: round_down(round_down(lo[axis])), hi: round_up(round_up(hi[axis])) })
 }
 
 /// What is in both; it ends before it starts when nothing is.

@@ -1,6 +1,7 @@
 //! The subdivision of a tile into beams and of beams into stretches.
 
 use std::rc::Rc;
+use std::sync::Arc;
 
 use glam::DVec3;
 
@@ -11,7 +12,8 @@ use crate::certified::Certified;
 use crate::certified::cells::Cell;
 use crate::certified::classify::free_of_zero;
 use crate::certified::clip::Clip;
-use crate::{Outcome, Region, Span, Workspace};
+use crate::certified::kernels::Kernels;
+use crate::{Kernel, Outcome, Region, Span, Workspace};
 
 /// Into how many stretches a beam is cut at most, and so how many boxes a kernel is given at once.
 const SLICES: usize = 8;
@@ -38,13 +40,13 @@ const LEAST_OVERLAP: f64 = 1.0 / (1u64 << 30) as f64;
 const WORK_LIMIT: u64 = 64;
 
 /// A stretch of a beam that may hold roots.
-#[derive(Debug)]
 pub(super) struct Part {
     pub(super) beam: Rc<Beam>,
     pub(super) stretch: Span,
     form: Option<Form>,
     /// Whether all of it lies in the region, and a little more at both ends too.
     pub(super) is_inside: bool,
+    pub(super) kernels: Arc<Kernels>,
 }
 
 /// A stretch of a beam, and a box around its part in the region.
@@ -128,7 +130,8 @@ impl<'a> Subdivision<'a> {
         let beam = Rc::new(self.bundle.beam(self.bundle.area));
         let Some(stretch) = self.passage(&beam) else { return };
         self.least_overlap = LEAST_OVERLAP * stretch.end;
-        self.ahead.push(Part { beam, stretch, form: None, is_inside: false });
+        let kernels = Arc::clone(&self.certified.kernels);
+        self.ahead.push(Part { beam, stretch, form: None, is_inside: false, kernels });
         while let Some(part) = self.ahead.pop() {
             if self.certified.stop.is_requested() {
                 return;
@@ -187,7 +190,7 @@ impl<'a> Subdivision<'a> {
         let is_small = beam.area.width.max(beam.area.height) <= SMALL;
         let is_even = form.unevenness() < UNEVEN;
         if is_even && (is_small || corners_hit(beam, form, narrowed)) {
-            self.follow_each(&Part { stretch: narrowed, ..part }, form);
+            self.follow_each(Part { stretch: narrowed, ..part }, form);
         } else if !is_small {
             self.examine(&self.quarters(beam), narrowed, 1);
         } else if length(narrowed) < 0.5 * length(*stretch) {
@@ -201,16 +204,31 @@ impl<'a> Subdivision<'a> {
         beam.area.quarters().map(|area| Rc::new(self.bundle.beam(area))).collect()
     }
 
-    /// Encloses F over all beams, each cut into `count` stretches, and keeps the stretches that may hold roots.
+    /// Looks at all beams, each cut into `count` stretches, and keeps the stretches that may hold roots.
     fn examine(&mut self, beams: &[Rc<Beam>], stretch: Span, count: usize) {
-        let slabs: Vec<Slab> = beams
+        let mut slabs: Vec<Slab> = beams
             .iter()
             .flat_map(|beam| slices(stretch, count).rev().map(move |stretch| (beam, stretch)))
             .filter_map(|(beam, stretch)| {
                 Slab::new(beam, stretch, self.least_overlap, &self.certified.region)
             })
             .collect();
-        self.enclose(&slabs);
+        let places = &self.certified.places;
+        let kernels: Vec<_> = slabs.iter().map(|slab| places.kernels(slab.lo, slab.hi)).collect();
+        for kernels in kernels.chunk_by(Arc::ptr_eq) {
+            let rest = slabs.split_off(kernels.len());
+            self.keep_open(slabs, &kernels[0]);
+            slabs = rest;
+        }
+    }
+
+    /// Encloses F over slabs that lie where `kernels` hold, and keeps those that may hold roots.
+    fn keep_open(&mut self, mut slabs: Vec<Slab>, kernels: &Arc<Kernels>) {
+        if kernels.may_be_shortened() {
+            // The gradient of a formula with branches takes much longer than its values, which often say enough.
+            self.drop_free(&mut slabs, kernels);
+        }
+        self.enclose(&slabs, kernels);
         let Workspace { boxes, centers, .. } = &*self.workspace;
         for (number, slab) in slabs.into_iter().enumerate() {
             if free_of_zero(boxes.interval(0, number)) {
@@ -220,15 +238,27 @@ impl<'a> Subdivision<'a> {
             let form = Form::new(&slab.beam, slab.reach, slab.center(), centers.interval(0, number), course);
             if form.as_ref().is_none_or(|form| !form.excludes_zero()) {
                 let Slab { beam, stretch, is_inside, .. } = slab;
-                self.ahead.push(Part { beam, stretch, form, is_inside });
+                self.ahead.push(Part { beam, stretch, form, is_inside, kernels: Arc::clone(kernels) });
             }
         }
     }
 
+    /// Drops the slabs over which the enclosure of F excludes zero.
+    fn drop_free(&mut self, slabs: &mut Vec<Slab>, kernels: &Kernels) {
+        let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
+        boxes.clear();
+        slabs.iter().for_each(|slab| boxes.push(slab.lo, slab.hi));
+        boxes.evaluate(kernels.values(), scratch, 1);
+        counters.box_evaluations += slabs.len() as u64;
+        counters.operations += slabs.len() as u64 * kernels.operations(Kernel::ValueEnclosures);
+        self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
+        let mut number = 0..;
+        slabs.retain(|_| number.next().is_some_and(|number| !free_of_zero(boxes.interval(0, number))));
+    }
+
     /// Encloses F and its derivatives over each slab, and F at its center.
-    fn enclose(&mut self, slabs: &[Slab]) {
+    fn enclose(&mut self, slabs: &[Slab], kernels: &Kernels) {
         let Workspace { boxes, centers, scratch, counters, .. } = &mut *self.workspace;
-        let kernels = &self.certified.kernels;
         boxes.clear();
         centers.clear();
         for slab in slabs {
@@ -236,10 +266,12 @@ impl<'a> Subdivision<'a> {
             boxes.push(slab.lo, slab.hi);
             centers.push(center, center);
         }
-        boxes.evaluate(&*kernels.gradients, scratch, 4);
-        centers.evaluate(&*kernels.values, scratch, 1);
+        boxes.evaluate(kernels.gradients(), scratch, 4);
+        centers.evaluate(kernels.values(), scratch, 1);
         let enclosed = 2 * slabs.len() as u64;
         counters.box_evaluations += enclosed;
+        counters.operations += slabs.len() as u64
+            * (kernels.operations(Kernel::GradientEnclosures) + kernels.operations(Kernel::ValueEnclosures));
         self.work_left = self.work_left.saturating_sub(enclosed);
     }
 
@@ -249,14 +281,14 @@ impl<'a> Subdivision<'a> {
             for column in part.beam.area.columns() {
                 let place = row * self.bundle.area.width + column;
                 if self.open[place] {
-                    self.search_one(place, part.stretch);
+                    self.search_one(place, part.stretch, &part.kernels);
                 }
             }
         }
     }
 
     /// Searches a stretch of one ray.
-    pub(super) fn search_one(&mut self, place: usize, stretch: Span) {
+    pub(super) fn search_one(&mut self, place: usize, stretch: Span, local: &Kernels) {
         let ray = self.bundle.rays[place];
         let Some(clip) = Clip::new(&self.certified.region, &ray) else { return };
         let outer = clip.outer;
@@ -264,7 +296,7 @@ impl<'a> Subdivision<'a> {
         if stretch.start > stretch.end {
             return;
         }
-        let outcome = self.certified.search(self.workspace, ray, clip, (Cell::SMALLEST, stretch));
+        let outcome = self.certified.search(self.workspace, ray, clip, (Cell::SMALLEST, stretch), local);
         if outcome != Outcome::Miss {
             self.end(place, outcome);
         }

@@ -1,0 +1,144 @@
+//! Kernels by place: where a box decides branches of F, what is left of F is kept for all rays that come by.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, RwLock};
+
+use glam::DVec3;
+use iso_expr::Interval;
+use rustc_hash::FxHashMap;
+
+use super::kernels::{Bounds, Kernels};
+use crate::{Kernel, Region};
+
+/// How often the region is halved along each axis at most.
+const DEEPEST: u32 = 6;
+
+/// A place holds what lies in it however that is rounded: it is larger at each side by this part of its size.
+const MARGIN: f64 = 1.0 / (1u64 << 32) as f64;
+
+/// How many operations the programs of all places may have together.
+const ROOM: u64 = 1 << 23;
+
+/// What F comes to in parts of the region, found out when it is first asked for.
+///
+/// The places of a level are boxes twice as long as the steps between them, so that whatever is no longer than a step lies in
+/// one of them. Each lies in one of the level above, from whose program its own is made. What a place holds depends on the
+/// surface and the place alone.
+pub(super) struct Places {
+    whole: Arc<Kernels>,
+    min: DVec3,
+    extent: DVec3,
+    /// Whether all is done with the whole formula.
+    are_ignored: bool,
+    known: RwLock<FxHashMap<Place, Arc<Kernels>>>,
+    /// How many operations may still be kept.
+    room: AtomicU64,
+}
+
+/// One of a level's overlapping boxes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Place {
+    /// How often the region is halved for one step.
+    level: u32,
+    /// How many steps along each axis it begins after the region.
+    steps: [u32; 3],
+}
+
+impl Place {
+    const REGION: Self = Self { level: 0, steps: [0; 3] };
+
+    /// A place of the level above around all of this one.
+    fn parent(self) -> Option<Self> {
+        let level = self.level.checked_sub(1)?;
+        Some(Self { level, steps: self.steps.map(|steps| steps / 2) })
+    }
+}
+
+impl Places {
+    pub(super) fn new(whole: &Arc<Kernels>, region: &Region) -> Self {
+        Self {
+            whole: Arc::clone(whole),
+            min: region.min(),
+            extent: region.max() - region.min(),
+            are_ignored: false,
+            known: RwLock::default(),
+            room: AtomicU64::new(ROOM),
+        }
+    }
+
+    /// None at all: the kernels are everywhere those of the whole formula.
+    pub(super) fn ignored(self) -> Self {
+        Self { are_ignored: true, ..self }
+    }
+
+    /// Kernels that hold on a box in the region: the shortest known, or those that hold everywhere where they are quicker.
+    pub(super) fn kernels(&self, lo: DVec3, hi: DVec3) -> Arc<Kernels> {
+        if !self.whole.may_be_shortened() || self.are_ignored {
+            return Arc::clone(&self.whole);
+        }
+        let found = self.at(self.around(lo, hi));
+        let bounds = [0, 1, 2].map(|axis| Interval { lo: lo[axis], hi: hi[axis] });
+        if found.cover(&bounds) && found.are_quicker_than(&self.whole) {
+            found
+        } else {
+            Arc::clone(&self.whole)
+        }
+    }
+
+    /// The smallest place that a box lies in.
+    fn around(&self, lo: DVec3, hi: DVec3) -> Place {
+        let longest = ((hi - lo) / self.extent).max_element();
+        let fitting = (-longest.log2()).floor();
+        let level =
+            if fitting > 0.0 { fitting.min(f64::from(DEEPEST)) as u32 } else { return Place::REGION };
+        let steps = (lo - self.min) / self.extent * f64::from(1u32 << level);
+        Place { level, steps: steps.to_array().map(|steps| steps as u32) }
+    }
+
+    /// What is known at a place, or can be found out.
+    fn at(&self, place: Place) -> Arc<Kernels> {
+        let mut missing = Vec::new();
+        let mut next = Some(place);
+        let mut found = loop {
+            let Some(place) = next else { break Arc::clone(&self.whole) };
+            let known = self.known.read().expect("no thread panics while it holds the map");
+            if let Some(found) = known.get(&place) {
+                break Arc::clone(found);
+            }
+            missing.push(place);
+            next = place.parent();
+        };
+        for place in missing.into_iter().rev() {
+            if !found.may_be_shortened() {
+                break;
+            }
+            found = self.find_out(place, found);
+        }
+        found
+    }
+
+    /// What F comes to at a place in one where it comes to `outer`.
+    fn find_out(&self, place: Place, outer: Arc<Kernels>) -> Arc<Kernels> {
+        let found = outer.shortened(self.bounds(place)).map_or(outer, Arc::new);
+        let operations = found.operations(Kernel::Values);
+        let room =
+            self.room.try_update(Ordering::Relaxed, Ordering::Relaxed, |room| room.checked_sub(operations));
+        // Without room it is found out anew each time: no result depends on what is kept.
+        if room.is_ok() {
+            let mut known = self.known.write().expect("no thread panics while it holds the map");
+            known.insert(place, Arc::clone(&found));
+        }
+        found
+    }
+
+    /// The box of a place, with a margin.
+    fn bounds(&self, place: Place) -> Bounds {
+        let step = self.extent / f64::from(1u32 << place.level);
+        [0, 1, 2].map(|axis| {
+            let lo = self.min[axis] + f64::from(place.steps[axis]) * step[axis];
+            let hi = lo + 2.0 * step[axis];
+            let margin = MARGIN * (step[axis] + lo.abs().max(hi.abs()));
+            Interval { lo: lo - margin, hi: hi + margin }
+        })
+    }
+}
