@@ -10,15 +10,15 @@ use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::Path;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use glam::DVec3;
 use iso_expr::{Ast, Engine, Interpreter, Program};
 use iso_grid::{GridSettings, Method, Region, RootFinding, Surface};
 use iso_jit::Jit;
 use iso_render::{
-    Camera, ImageFormat, Layers, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, View, Wanted,
-    render,
+    Camera, ImageFormat, Layers, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, Stopwatch, View,
+    Wanted, render,
 };
 use plotters::prelude::*;
 use rayon::ThreadPoolBuilder;
@@ -138,12 +138,12 @@ impl Paper {
 /// the time on the clock.
 struct ProcessorClock {
     busy: Option<Duration>,
-    wall: Instant,
+    wall: Stopwatch,
 }
 
 impl ProcessorClock {
     fn start() -> Self {
-        Self { busy: busy(), wall: Instant::now() }
+        Self { busy: busy(), wall: Stopwatch::start() }
     }
 
     fn elapsed(&self) -> Duration {

@@ -9,13 +9,14 @@
 mod scenes;
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use iso_expr::Engine;
 use iso_grid::{
     Certified, Direct, Grid, GridSettings, Hit, Octree, Outcome, Ray, RootFinding, Surface, Tracer, Workspace,
 };
 use iso_jit::Jit;
+use iso_render::Stopwatch;
 use scenes::{Scene, Status, Verdict};
 
 /// Cells along each axis: the finest of the paper's grids.
@@ -128,10 +129,10 @@ impl Tally {
         let mut outcomes = vec![Outcome::Miss; rays.len()];
         let mut workspace = Workspace::default();
         compile(surface);
-        let start = Instant::now();
+        let watch = Stopwatch::start();
         let tracer = (method.prepare)(scene, surface);
         tracer.trace(&mut workspace, &rays, &mut outcomes);
-        let time = start.elapsed();
+        let time = watch.elapsed();
         let mut counters = workspace.counters;
         counters += tracer.preprocessing();
         let evaluations =

@@ -8,7 +8,6 @@ mod scenes;
 
 use std::fmt;
 use std::sync::Arc;
-use std::time::Instant;
 
 use iso_expr::{Engine, Interpreter};
 use iso_grid::{
@@ -16,6 +15,7 @@ use iso_grid::{
     Workspace,
 };
 use iso_jit::Jit;
+use iso_render::Stopwatch;
 use scenes::rounding::Rounding;
 use scenes::{Scene, Status, Verdict};
 
@@ -153,11 +153,11 @@ impl Comparison {
         let rays: Vec<Ray> = verdicts.iter().map(|verdict| verdict.ray).collect();
         let mut workspace = Workspace::default();
         let mut outcomes = vec![Outcome::Miss; rays.len()];
-        let start = Instant::now();
+        let mut watch = Stopwatch::start();
         let tracer = method(&surface, scene.region());
-        let prepared = Instant::now();
+        let prepared = watch.lap();
         tracer.trace(&mut workspace, &rays, &mut outcomes);
-        let milliseconds = [prepared - start, prepared.elapsed()].map(|time| time.as_secs_f64() * 1e3);
+        let milliseconds = [prepared, watch.lap()].map(|time| time.as_secs_f64() * 1e3);
 
         let mut comparison = Self {
             name: scene.name.clone(),
