@@ -41,7 +41,7 @@ impl Grid {
     ///
     /// # Errors
     /// When a setting is out of range, the grid has more than [`Grid::MOST_CELLS`] cells, the engine cannot compile F − C or its gradient,
-    /// or the surface's [`Stop`] is requested.
+    /// or the surface's [`Stop`](crate::Stop) is requested.
     pub fn new(surface: &Surface, region: Region, settings: &GridSettings) -> Result<Self, GridError> {
         settings.check()?;
         if settings.count() > Self::MOST_CELLS {

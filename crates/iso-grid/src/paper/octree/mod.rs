@@ -38,7 +38,7 @@ impl Octree {
     ///
     /// # Errors
     /// When a setting is out of range, more than [`Octree::MOST_CELLS`] blocks of one size come up, the engine cannot
-    /// compile F − C or its gradient, or the surface's [`Stop`] is requested.
+    /// compile F − C or its gradient, or the surface's [`Stop`](crate::Stop) is requested.
     pub fn new(surface: &Surface, region: Region, settings: &GridSettings) -> Result<Self, GridError> {
         settings.check()?;
         let values = surface.values()?;
