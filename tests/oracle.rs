@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use iso_expr::{Engine, Interpreter};
-use iso_grid::{Certified, Hit, Outcome, Ray, Tracer, Workspace, normals};
+use iso_grid::{Certified, Hit, Outcome, Ray, Tile, Tracer, Workspace, normals};
 use iso_jit::Jit;
 use scenes::rounding::Rounding;
 use scenes::{Scene, Status, Verdict};
@@ -85,7 +85,7 @@ fn trace_pictures(
     for side in SIDES {
         let (tile, other_rays) = rays.split_at(rays.len().min(side * side));
         let (ends, other_outcomes) = outcomes.split_at_mut(tile.len());
-        tracer.trace_tile(workspace, side, tile, ends);
+        tracer.trace_tile(workspace, Tile::listed(tile, side), ends);
         (rays, outcomes) = (other_rays, other_outcomes);
     }
     assert!(rays.is_empty(), "a scene has three pictures");
@@ -149,7 +149,7 @@ impl Comparison {
         let mut outcomes = vec![Outcome::Miss; rays.len()];
         trace(&tracer, &mut workspace, &rays, &mut outcomes);
         let mut found = vec![DVec3::NAN; rays.len()];
-        normals(&surface, &mut workspace, &rays, &outcomes, &mut found).expect("the scenes compile");
+        normals(&surface, &mut workspace, rays.as_slice().into(), &outcomes, &mut found).expect("the scenes compile");
 
         let mut comparison = Self {
             name: scene.name.clone(),

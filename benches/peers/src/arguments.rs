@@ -31,6 +31,9 @@ pub struct Arguments {
     /// How often POV-Ray does, which takes seconds a picture; 0 leaves it out.
     #[arg(long, default_value_t = 1)]
     pub povray_turns: usize,
+    /// Leaves fidget out.
+    #[arg(long)]
+    pub without_fidget: bool,
     /// Threads of every program.
     #[arg(long, default_value_t = std::thread::available_parallelism().map_or(1, usize::from))]
     pub threads: usize,

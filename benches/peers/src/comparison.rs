@@ -140,11 +140,13 @@ fn renderers_of(
     iso: Iso,
 ) -> Vec<Result<Box<dyn Renderer>, Box<dyn Error>>> {
     let program = &body.program;
-    let mut renderers: Vec<Result<Box<dyn Renderer>, Box<dyn Error>>> = vec![
-        Ok(Box::new(iso)),
-        Fidget::<VmFunction>::new(VM, program, view).map(|renderer| Box::new(renderer) as _),
-        Fidget::<JitFunction>::new(JIT, program, view).map(|renderer| Box::new(renderer) as _),
-    ];
+    let mut renderers: Vec<Result<Box<dyn Renderer>, Box<dyn Error>>> = vec![Ok(Box::new(iso))];
+    if !arguments.without_fidget {
+        renderers.extend([
+            Fidget::<VmFunction>::new(VM, program, view).map(|renderer| Box::new(renderer) as _),
+            Fidget::<JitFunction>::new(JIT, program, view).map(|renderer| Box::new(renderer) as _),
+        ]);
+    }
     if arguments.povray_turns > 0 && PovRay::is_installed() {
         let expected = |view| Iso::new(program, view, arguments.method, arguments.engine)?.answer();
         let povray = PovRay::tuned(program, view, arguments.threads, expected);

@@ -4,7 +4,7 @@ use glam::DVec3;
 use iso_expr::{BatchKernel, CompileError, Scratch};
 
 use crate::batch::PointBatch;
-use crate::{Hit, Outcome, Ray, Surface, Workspace};
+use crate::{Hit, Outcome, Ray, Surface, Tile, Workspace};
 
 /// Hits whose gradients are asked for by one call of the kernel.
 const BATCH: usize = 256;
@@ -13,7 +13,7 @@ const BATCH: usize = 256;
 const APPROACH: [i32; 11] = [-40, -37, -34, -31, -28, -25, -22, -19, -16, -13, -10];
 
 /// The unit normal ∇F/|∇F| at each hit and touch, towards larger F whichever way the ray comes; NaN for other outcomes.
-/// All three slices are equally long.
+/// Both slices hold something for each ray of the tile.
 ///
 /// At a touch, and where the gradient vanishes or is no finite vector, the normal is a limit: that of the points in front of the hit, on
 /// the side that the ray comes from, the nearest that has one. So a double root such as (x² + y² + z² − 1)² = 0 has the
@@ -24,17 +24,18 @@ const APPROACH: [i32; 11] = [-40, -37, -34, -31, -28, -25, -22, -19, -16, -13, -
 pub fn normals(
     surface: &Surface,
     workspace: &mut Workspace,
-    rays: &[Ray],
+    tile: Tile<'_>,
     outcomes: &[Outcome],
     normals: &mut [DVec3],
 ) -> Result<(), CompileError> {
     assert!(
-        rays.len() == outcomes.len() && rays.len() == normals.len(),
+        tile.len() == outcomes.len() && tile.len() == normals.len(),
         "each ray has an outcome and a normal"
     );
     let Workspace { scratch, counters, points, .. } = workspace;
     normals.fill(DVec3::NAN);
-    let mut met: Vec<Met> = rays.iter().zip(outcomes).enumerate().filter_map(Met::new).collect();
+    let found = outcomes.iter().enumerate();
+    let mut met: Vec<Met> = found.filter_map(|(place, outcome)| Met::new(tile, place, outcome)).collect();
     if met.is_empty() {
         return Ok(());
     }
@@ -63,10 +64,10 @@ struct Met {
 }
 
 impl Met {
-    fn new((place, (ray, outcome)): (usize, (&Ray, &Outcome))) -> Option<Self> {
+    fn new(tile: Tile<'_>, place: usize, outcome: &Outcome) -> Option<Self> {
         match *outcome {
-            Outcome::Hit(hit) => Some(Self { place, ray: *ray, hit, touches: false }),
-            Outcome::Touch(hit) => Some(Self { place, ray: *ray, hit, touches: true }),
+            Outcome::Hit(hit) => Some(Self { place, ray: tile.ray_at(place), hit, touches: false }),
+            Outcome::Touch(hit) => Some(Self { place, ray: tile.ray_at(place), hit, touches: true }),
             Outcome::Miss | Outcome::Undecided(_) => None,
         }
     }

@@ -3,8 +3,8 @@
 use iso_expr::Scratch;
 
 use crate::batch::{BoxBatch, PointBatch};
-use crate::certified::{Ahead, Entry, Expansion, Pixel};
-use crate::{Counters, Ray, Span};
+use crate::certified::{Ahead, Entry, Expansion, Memory};
+use crate::{Counters, Ray, Span, Tile};
 
 /// A point of the surface on a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,13 +37,12 @@ pub trait Tracer: Send + Sync {
     /// When the surface's [`Stop`](crate::Stop) is requested, this returns soon, and no outcome means anything.
     fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]);
 
-    /// The same for a tile: neighbouring rays of a picture, `width` in each row, row by row from the top.
+    /// The same for a tile, row by row.
     ///
     /// A method may share work between the rays of a tile. What it says of each is as true as if it were traced alone, but
     /// where in its bracket a root is placed, and how wide the bracket is, may depend on the other rays of the tile.
-    fn trace_tile(&self, workspace: &mut Workspace, width: usize, rays: &[Ray], outcomes: &mut [Outcome]) {
-        debug_assert!(width > 0 && rays.len().is_multiple_of(width), "a tile has full rows");
-        self.trace(workspace, rays, outcomes);
+    fn trace_tile(&self, workspace: &mut Workspace, tile: Tile<'_>, outcomes: &mut [Outcome]) {
+        self.trace(workspace, &tile.rays().collect::<Vec<_>>(), outcomes);
     }
 
     /// What preprocessing took.
@@ -69,8 +68,8 @@ pub struct Workspace {
     pub(crate) ahead: Vec<Ahead>,
     /// Which cells a certified search is to enter.
     pub(crate) entries: Vec<Entry>,
-    /// Rays of a tile that are followed together.
-    pub(crate) pixels: Vec<Pixel>,
+    /// A tile and its beams.
+    pub(crate) tile: Memory,
     /// A polynomial along a ray.
     pub(crate) expansion: Expansion,
 }

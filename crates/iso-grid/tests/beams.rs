@@ -90,7 +90,7 @@ fn tiles(half: f64, width: usize, height: usize) -> [Tile; 4] {
 
 fn together(tracer: &dyn Tracer, tile: &Tile) -> Vec<Outcome> {
     let mut outcomes = vec![Outcome::Miss; tile.rays.len()];
-    tracer.trace_tile(&mut Workspace::default(), tile.width, &tile.rays, &mut outcomes);
+    tracer.trace_tile(&mut Workspace::default(), iso_grid::Tile::listed(&tile.rays, tile.width), &mut outcomes);
     outcomes
 }
 
@@ -197,7 +197,7 @@ fn shortened_formulas_prove_what_whole_ones_do() {
         for Tile { name: view, rays, width } in tiles(half, 48, 40) {
             let trace = |tracer: &Certified| {
                 let (mut workspace, mut outcomes) = (Workspace::default(), vec![Outcome::Miss; rays.len()]);
-                tracer.trace_tile(&mut workspace, width, &rays, &mut outcomes);
+                tracer.trace_tile(&mut workspace, iso_grid::Tile::listed(&rays, width), &mut outcomes);
                 (outcomes, workspace.counters.operations)
             };
             let ((short, fewer), (long, more)) = (trace(&shortened), trace(&whole));

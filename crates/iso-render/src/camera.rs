@@ -3,7 +3,7 @@
 //! z points up. Orbiting cameras look at the middle of the region; yaw 0 and pitch 0 look along +y with x to the right.
 
 use glam::DVec3;
-use iso_grid::{Ray, Region};
+use iso_grid::{Raster, Ray, Region, Tile};
 use thiserror::Error;
 
 use crate::Size;
@@ -81,21 +81,9 @@ pub enum CameraError {
 /// Rays for the pixels of a picture of given size.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
-    projection: Rays,
-    /// Unit vectors to the right and down in the picture, scaled to the distance of neighbouring pixels.
-    right: DVec3,
-    down: DVec3,
-    forward: DVec3,
+    raster: Raster,
     /// The middle of the picture, in pixels.
     middle: [f64; 2],
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Rays {
-    /// From this eye; `right` and `down` are taken at distance 1.
-    Spreading(DVec3),
-    /// Along `forward`, from the plane through this point.
-    Parallel(DVec3),
 }
 
 impl Camera {
@@ -112,8 +100,11 @@ impl Camera {
         let (eye, forward, up) = place(view, &frame)?;
         let right = forward.cross(up).normalize();
         let down = forward.cross(right);
-        let (projection, spacing) = match projection {
-            Projection::Perspective { fov } => (Rays::Spreading(eye), 2.0 * half_height(fov) / height),
+        let raster = match projection {
+            Projection::Perspective { fov } => {
+                let spacing = 2.0 * half_height(fov) / height;
+                Raster::Spreading { eye, forward, right: spacing * right, down: spacing * down }
+            }
             Projection::Orthographic { view_width } => {
                 let view_width = view_width.unwrap_or_else(|| frame.view_width(right, down));
                 checked(
@@ -122,37 +113,52 @@ impl Camera {
                     view_width,
                     view_width > 0.0 && view_width.is_finite(),
                 )?;
-                (Rays::Parallel(eye), view_width / width)
+                let spacing = view_width / width;
+                Raster::Parallel {
+                    middle: eye,
+                    right: spacing * right,
+                    down: spacing * down,
+                    direction: forward,
+                }
             }
         };
-        let middle = [0.5 * width, 0.5 * height];
-        Ok(Self { projection, right: spacing * right, down: spacing * down, forward, middle })
+        Ok(Self { raster, middle: [0.5 * width, 0.5 * height] })
     }
 
     /// The ray through the middle of a pixel. Its direction has length 1 up to rounding, so t is a distance.
     pub fn ray(&self, column: u32, row: u32) -> Ray {
-        let across = f64::from(column) + 0.5 - self.middle[0];
-        let along = f64::from(row) + 0.5 - self.middle[1];
-        let offset = across * self.right + along * self.down;
-        match self.projection {
-            Rays::Spreading(eye) => Ray { origin: eye, direction: (self.forward + offset).normalize() },
-            Rays::Parallel(middle) => Ray { origin: middle + offset, direction: self.forward },
-        }
+        let [across, along] = self.offset(column, row);
+        self.raster.ray(across, along)
+    }
+
+    /// The rays through the middles of the pixels of a rectangle, whose first pixel is in this column and row.
+    pub fn tile(&self, column: u32, row: u32, width: u32, height: u32) -> Tile<'_> {
+        Tile::of(&self.raster, self.offset(column, row), width as usize, height as usize)
+    }
+
+    /// How far a pixel is from the middle of the picture.
+    fn offset(&self, column: u32, row: u32) -> [f64; 2] {
+        [f64::from(column) + 0.5 - self.middle[0], f64::from(row) + 0.5 - self.middle[1]]
     }
 
     /// The unit vector into the picture.
     pub fn forward(&self) -> DVec3 {
-        self.forward
+        match self.raster {
+            Raster::Parallel { direction, .. } => direction,
+            Raster::Spreading { forward, .. } => forward,
+        }
     }
 
     /// The unit vector towards the right edge of the picture.
     pub fn right(&self) -> DVec3 {
-        self.right.normalize()
+        let (Raster::Parallel { right, .. } | Raster::Spreading { right, .. }) = self.raster;
+        right.normalize()
     }
 
     /// The unit vector towards the upper edge of the picture.
     pub fn up(&self) -> DVec3 {
-        -self.down.normalize()
+        let (Raster::Parallel { down, .. } | Raster::Spreading { down, .. }) = self.raster;
+        -down.normalize()
     }
 }
 

@@ -98,8 +98,8 @@ fn tiles(size: Size) -> Vec<Area> {
 struct Tile {
     area: Area,
     layers: Layers,
-    rays: Vec<Ray>,
     outcomes: Vec<Outcome>,
+    points: Vec<DVec3>,
     normals: Vec<DVec3>,
     color: Vec<[u8; 3]>,
     counters: Counters,
@@ -120,14 +120,10 @@ impl Tile {
             return Ok(None);
         }
         let mut watch = Stopwatch::start();
-        let pixels = || {
-            (area.row..area.row + area.height)
-                .flat_map(move |row| (area.column..area.column + area.width).map(move |column| (column, row)))
-        };
-        let rays: Vec<Ray> = pixels().map(|(column, row)| scene.camera.ray(column, row)).collect();
+        let rays = scene.camera.tile(area.column, area.row, area.width, area.height);
         let mut outcomes = vec![Outcome::Miss; rays.len()];
         workspace.counters = Counters::default();
-        scene.tracer.trace_tile(workspace, area.width as usize, &rays, &mut outcomes);
+        scene.tracer.trace_tile(workspace, rays, &mut outcomes);
         if stop.is_requested() {
             return Ok(None);
         }
@@ -136,27 +132,32 @@ impl Tile {
         let mut found_normals = Vec::new();
         if scene.plan.runs(Pass::Normals) {
             found_normals.resize(rays.len(), DVec3::NAN);
-            normals(scene.surface, workspace, &rays, &outcomes, &mut found_normals)?;
+            normals(scene.surface, workspace, rays, &outcomes, &mut found_normals)?;
         }
         let mut color = Vec::new();
         if scene.plan.runs(Pass::Shade) {
-            color.extend(pixels().enumerate().map(|(place, (_, row))| {
-                let view = rays[place].direction;
-                srgb_from_color(scene.shading.color(&outcomes[place], found_normals[place], view, row, size))
+            color.extend(rays.rays().enumerate().map(|(place, ray)| {
+                let (row, normal) = (area.row + place as u32 / area.width, found_normals[place]);
+                srgb_from_color(scene.shading.color(&outcomes[place], normal, ray.direction, row, size))
             }));
         }
         let shade = watch.lap();
         let counters = workspace.counters;
         let layers = scene.plan.layers();
-        Ok(Some(Self { area, layers, rays, outcomes, normals: found_normals, color, counters, trace, shade }))
-    }
-
-    /// The point found at a place of the tile; `None` where nothing was.
-    fn found(&self, place: usize) -> Option<f64> {
-        match self.outcomes[place] {
-            Outcome::Hit(hit) | Outcome::Touch(hit) => Some(hit.t),
-            Outcome::Miss | Outcome::Undecided(_) => None,
+        let mut points = Vec::new();
+        if layers.points {
+            let point = |(outcome, ray): (&Outcome, Ray)| found(outcome).map_or(DVec3::NAN, |t| ray.at(t));
+            points.extend(outcomes.iter().zip(rays.rays()).map(point));
         }
+        Ok(Some(Self { area, layers, outcomes, points, normals: found_normals, color, counters, trace, shade }))
+    }
+}
+
+/// Where on its ray something was found; `None` where nothing was.
+fn found(outcome: &Outcome) -> Option<f64> {
+    match outcome {
+        Outcome::Hit(hit) | Outcome::Touch(hit) => Some(hit.t),
+        Outcome::Miss | Outcome::Undecided(_) => None,
     }
 }
 
@@ -182,15 +183,15 @@ impl Finished {
             if tile.layers.normals {
                 picture.normals[to.clone()].copy_from_slice(&tile.normals[from.clone()]);
             }
+            if tile.layers.points {
+                picture.points[to.clone()].copy_from_slice(&tile.points[from.clone()]);
+            }
             if tile.layers.outcomes {
                 picture.outcomes[to.clone()].copy_from_slice(&tile.outcomes[from.clone()]);
             }
             for (place, pixel) in from.zip(to) {
                 if tile.layers.depth {
-                    picture.depth[pixel] = tile.found(place).unwrap_or(f64::NAN);
-                }
-                if tile.layers.points {
-                    picture.points[pixel] = tile.found(place).map_or(DVec3::NAN, |t| tile.rays[place].at(t));
+                    picture.depth[pixel] = found(&tile.outcomes[place]).unwrap_or(f64::NAN);
                 }
                 if tile.layers.statuses {
                     picture.statuses[pixel] = Status::from(&tile.outcomes[place]);

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use iso_expr::{Engine, Interpreter};
-use iso_grid::{Certified, GridSettings, Method, Outcome, Ray, RootFinding, Surface, Tracer, Workspace};
+use iso_grid::{Certified, GridSettings, Method, Outcome, Ray, RootFinding, Surface, Tile, Tracer, Workspace};
 use iso_render::{Camera, Projection, Size, Status, StatusCounts, View};
 use serde::Serialize;
 
@@ -151,7 +151,7 @@ fn truths(case: &Case, rays: &[Ray], size: Size) -> Result<Vec<Truth>, Failure> 
 /// Traces a picture as one tile.
 fn trace(tracer: &dyn Tracer, rays: &[Ray], size: Size) -> Vec<Outcome> {
     let mut outcomes = vec![Outcome::Miss; rays.len()];
-    tracer.trace_tile(&mut Workspace::default(), size.width() as usize, rays, &mut outcomes);
+    tracer.trace_tile(&mut Workspace::default(), Tile::listed(rays, size.width() as usize), &mut outcomes);
     outcomes
 }
 

@@ -18,9 +18,9 @@ use std::sync::Arc;
 
 use iso_expr::CompileError;
 
-use crate::{Counters, Outcome, Ray, Region, Span, Stop, Surface, Tracer, Workspace};
-pub(crate) use beams::Pixel;
-use beams::{Bundle, Subdivision};
+use crate::{Counters, Outcome, Ray, Region, Span, Stop, Surface, Tile, Tracer, Workspace};
+pub(crate) use beams::Memory;
+use beams::Subdivision;
 use cells::Cell;
 pub(crate) use cells::Cells;
 use clip::Clip;
@@ -156,11 +156,11 @@ impl Tracer for Certified {
         }
     }
 
-    fn trace_tile(&self, workspace: &mut Workspace, width: usize, rays: &[Ray], outcomes: &mut [Outcome]) {
-        assert_eq!(rays.len(), outcomes.len());
-        match Bundle::new(rays, width) {
-            Some(bundle) => Subdivision::new(self, workspace, &bundle, outcomes).run(),
-            None => self.trace(workspace, rays, outcomes),
+    fn trace_tile(&self, workspace: &mut Workspace, tile: Tile<'_>, outcomes: &mut [Outcome]) {
+        assert_eq!(tile.len(), outcomes.len());
+        match Subdivision::new(self, workspace, tile, outcomes) {
+            Some(subdivision) => subdivision.run(),
+            None => self.trace(workspace, &tile.rays().collect::<Vec<_>>(), outcomes),
         }
     }
 

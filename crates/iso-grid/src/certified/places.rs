@@ -71,9 +71,14 @@ impl Places {
         Self { are_ignored: true, ..self }
     }
 
+    /// Whether formulas may be shorter in some places.
+    pub(super) fn are_asked(&self) -> bool {
+        self.whole.may_be_shortened() && !self.are_ignored
+    }
+
     /// Kernels that hold on a box in the region: the shortest known, or those that hold everywhere where they are quicker.
     pub(super) fn kernels(&self, lo: DVec3, hi: DVec3) -> Arc<Kernels> {
-        if !self.whole.may_be_shortened() || self.are_ignored {
+        if !self.are_asked() {
             return Arc::clone(&self.whole);
         }
         let found = self.at(self.around(lo, hi));

@@ -12,7 +12,7 @@ use iso_expr::random::Random;
 use iso_expr::{Decorated, Decoration, Engine, Interpreter, Interval, Program, Scratch};
 use iso_grid::{
     Certified, Direct, Grid, GridError, GridSettings, Octree, Outcome, Ray, Region, RootFinder, RootFinding,
-    Span, Stop, Surface, Tracer, Workspace,
+    Span, Stop, Surface, Tile, Tracer, Workspace,
 };
 
 /// How many columns and rows the tile that is traced may have.
@@ -64,7 +64,7 @@ fn trace_by_two(random: &mut Random, program: &Program, stop: &Stop) -> Result<(
     let certified = Certified::new(&surface, region)?;
     let alone = outcomes(&certified, &rays);
     let mut together = alone.clone();
-    certified.trace_tile(&mut Workspace::default(), side, &rays, &mut together);
+    certified.trace_tile(&mut Workspace::default(), Tile::listed(&rays, side), &mut together);
     if stop.is_requested() {
         return Err(GridError::Stopped);
     }

@@ -20,14 +20,6 @@ impl Area {
         self.row..self.row + self.height
     }
 
-    pub(super) fn last_column(self) -> usize {
-        self.column + self.width - 1
-    }
-
-    pub(super) fn last_row(self) -> usize {
-        self.row + self.height - 1
-    }
-
     /// Columns and rows of the corners, left to right and top to bottom.
     pub(super) fn corners(self) -> [(usize, usize); 4] {
         let (left, right) = (self.column, self.column + self.width.saturating_sub(1));
@@ -42,22 +34,15 @@ impl Area {
         (from_middle(column, self.column, self.width), from_middle(row, self.row, self.height))
     }
 
-    /// How far the middle of `part` is from this one's. Exact.
-    pub(super) fn offset_of_middle(self, part: Self) -> (f64, f64) {
-        let (across, along) = self.offset(part.column, part.row);
-        (across + 0.5 * (part.width as f64 - 1.0), along + 0.5 * (part.height as f64 - 1.0))
+    /// How far the middle is from the tile's first column and row. Exact.
+    pub(super) fn offset_of_first(self) -> (f64, f64) {
+        let [across, along] = self.radii();
+        (self.column as f64 + across, self.row as f64 + along)
     }
 
-    /// The squares of `side` columns and rows that this area is made of, smaller at the right and at the bottom, row by row.
-    pub(super) fn blocks(self, side: usize) -> impl Iterator<Item = Self> {
-        self.rows().step_by(side).flat_map(move |row| {
-            self.columns().step_by(side).map(move |column| Self {
-                column,
-                row,
-                width: side.min(self.column + self.width - column),
-                height: side.min(self.row + self.height - row),
-            })
-        })
+    /// How far columns and rows are from the middle at most. Exact.
+    pub(super) fn radii(self) -> [f64; 2] {
+        [self.width, self.height].map(|length| 0.5 * (length as f64 - 1.0))
     }
 
     /// The two or four parts of an area that is cut in the middle of its longer side, or of both when they are about equally

@@ -4,7 +4,7 @@ use glam::DVec3;
 use iso_expr::interval::round_up;
 use iso_expr::{Decorated, Decoration, Interval};
 
-use super::bundle::Beam;
+use super::beam::Beam;
 use crate::Span;
 
 /// A few roundings, relative to what is rounded: more than any sum here takes.
@@ -22,21 +22,22 @@ pub(super) struct Ball {
 }
 
 impl Ball {
-    pub(super) fn around(interval: Interval) -> Self {
-        Self { middle: interval.midpoint(), radius: interval.radius() }
+    fn around(interval: Interval) -> Self {
+        let (lo, hi) = (0.5 * interval.lo, 0.5 * interval.hi);
+        Self { middle: lo + hi, radius: hi - lo }.widened(f64::MIN_POSITIVE)
     }
 
-    pub(super) fn magnitude(self) -> f64 {
+    fn magnitude(self) -> f64 {
         (1.0 + ROUNDING) * (self.middle.abs() + self.radius)
     }
 
     /// Whether zero is certainly not one of the numbers.
-    pub(super) fn excludes_zero(self) -> bool {
+    fn excludes_zero(self) -> bool {
         self.middle.abs() > self.radius && self.radius < f64::INFINITY
     }
 
     /// The numbers as an interval.
-    pub(super) fn interval(self) -> Interval {
+    fn interval(self) -> Interval {
         Interval::point(self.middle).minus(Interval { lo: -self.radius, hi: self.radius })
     }
 
@@ -45,34 +46,46 @@ impl Ball {
     }
 }
 
-/// All gradients of F over a box.
-struct Gradient {
+/// All gradients of F over a box, or over several: vectors no farther from `middle` than `radius`, component by component.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gradient {
+    lo: DVec3,
+    hi: DVec3,
     middle: DVec3,
     radius: DVec3,
 }
 
 impl Gradient {
-    fn new(partials: [Interval; 3]) -> Self {
-        let balls = partials.map(Ball::around);
-        Self {
-            middle: DVec3::from_array(balls.map(|ball| ball.middle)),
-            radius: DVec3::from_array(balls.map(|ball| ball.radius)),
-        }
+    /// `None` when the mean value theorem does not hold over a box with this `course`: F and its derivatives.
+    pub(super) fn new([over_all, partials @ ..]: [Decorated; 4]) -> Option<Self> {
+        let is_smooth = over_all.decoration >= Decoration::Continuous
+            && partials.iter().all(|partial| partial.decoration >= Decoration::Defined);
+        let lo = DVec3::from_array(partials.map(|partial| partial.interval.lo));
+        let hi = DVec3::from_array(partials.map(|partial| partial.interval.hi));
+        is_smooth.then(|| Self::between(lo, hi))
+    }
+
+    fn between(lo: DVec3, hi: DVec3) -> Self {
+        let (half_lo, half_hi) = (0.5 * lo, 0.5 * hi);
+        let (middle, radius) = (half_lo + half_hi, half_hi - half_lo);
+        // Enough for the products, too.
+        let rounding = 4.0 * ROUNDING * (middle.abs() + radius) + DVec3::splat(f64::MIN_POSITIVE);
+        Self { lo, hi, middle, radius: radius + rounding }
+    }
+
+    /// The gradients of both.
+    pub(super) fn hull(&self, other: &Self) -> Self {
+        Self::between(self.lo.min(other.lo), self.hi.max(other.hi))
     }
 
     /// The products with `vector`.
     fn along(&self, vector: DVec3) -> Ball {
-        let size = vector.abs();
-        let rounding = ROUNDING * self.middle.abs().dot(size) + f64::MIN_POSITIVE;
-        Ball {
-            middle: self.middle.dot(vector),
-            radius: (1.0 + ROUNDING) * (self.radius.dot(size) + rounding),
-        }
+        Ball { middle: self.middle.dot(vector), radius: self.radius.dot(vector.abs()) + f64::MIN_POSITIVE }
     }
 
     /// How large products with vectors no longer than `size`, component by component, may be.
     fn magnitude_along(&self, size: DVec3) -> f64 {
-        (1.0 + ROUNDING) * (self.middle.abs() + self.radius).dot(size) + f64::MIN_POSITIVE
+        (self.middle.abs() + self.radius).dot(size) + f64::MIN_POSITIVE
     }
 }
 
@@ -83,56 +96,49 @@ impl Gradient {
 /// there are enclosed (Neumaier, Interval Methods for Systems of Equations, 1990, section 2.3).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Form {
-    pub(super) t: f64,
-    pub(super) value: Ball,
-    pub(super) by_column: Ball,
-    pub(super) by_row: Ball,
+    t: f64,
+    value: Ball,
+    by_column: Ball,
+    by_row: Ball,
     /// The derivative of F along every ray of the beam.
     pub(super) slope: Ball,
     /// What no sum of columns, rows and the rest exceeds.
     across: f64,
+    /// The part of `across` that is not known from column and row.
+    vague: f64,
     /// The stretch on which it holds.
     pub(super) reach: Span,
 }
 
 impl Form {
-    /// The form around `center`, a point of the convex set over which `course` was enclosed, where `value` encloses F. `None`
-    /// when the mean value theorem does not hold.
+    /// The form around `center`, near to where the middle of the beam is at `t`, where `value` encloses F. The point and the
+    /// stretch `reach` of the beam lie in a convex set on which `gradient` holds. `None` when it says nothing.
     pub(super) fn new(
         beam: &Beam,
         reach: Span,
-        center: DVec3,
+        (t, center): (f64, DVec3),
         value: Interval,
-        course: [Decorated; 4],
+        gradient: &Gradient,
     ) -> Option<Self> {
-        let [over_all, partials @ ..] = course;
-        let is_smooth = over_all.decoration >= Decoration::Continuous
-            && partials.iter().all(|partial| partial.decoration >= Decoration::Defined);
-        if !is_smooth {
-            return None;
-        }
-        let gradient = Gradient::new(partials.map(|partial| partial.interval));
-        let t = 0.5 * (reach.start + reach.end);
         let (o, d) = (&beam.origins, &beam.directions);
         let [column_radius, row_radius] = beam.radii;
         // From the center to the point at `t` on a ray: `shift` + a·column + b·row, and the rest.
         let [column, row] = beam.across(t);
         let shift = (o.middle - center) + t * d.middle;
-        let size = |spread: &super::bundle::Spread| spread.middle.abs() + spread.radius;
-        let rounding = ROUNDING * (size(o) + t * size(d) + center.abs());
+        let rounding = ROUNDING * (o.size + t * d.size + center.abs());
         let rest = gradient.magnitude_along(o.rest + t * d.rest + rounding);
-
         let [by_column, by_row, offset] = [column, row, shift].map(|vector| gradient.along(vector));
         let value = Ball::around(value);
-        let spread = gradient.magnitude_along(d.radius);
-        let across = by_column.magnitude() * column_radius + by_row.magnitude() * row_radius + rest;
+        let vague = by_column.radius * column_radius + by_row.radius * row_radius + rest;
+        let known = by_column.middle.abs() * column_radius + by_row.middle.abs() * row_radius;
         let form = Self {
             t,
             value: Ball { middle: value.middle + offset.middle, ..value }.widened(offset.radius),
             by_column,
             by_row,
-            slope: gradient.along(d.middle).widened(spread),
-            across: (1.0 + ROUNDING) * across,
+            slope: gradient.along(d.middle).widened(gradient.magnitude_along(d.radius)),
+            across: (1.0 + ROUNDING) * (known + vague),
+            vague: (1.0 + ROUNDING) * vague,
             reach,
         };
         let is_finite =
@@ -140,10 +146,14 @@ impl Form {
         is_finite.then_some(form)
     }
 
+    /// How far the ends of the stretch are from `t`.
+    fn length(&self) -> f64 {
+        round_up(self.reach.end - self.t).max(round_up(self.t - self.reach.start))
+    }
+
     /// Whether F is certainly nowhere zero.
     pub(super) fn excludes_zero(&self) -> bool {
-        let along = round_up(self.reach.end - self.t).max(round_up(self.t - self.reach.start));
-        self.value.widened(self.across + self.slope.magnitude() * along).excludes_zero()
+        self.value.widened(self.across + self.slope.magnitude() * self.length()).excludes_zero()
     }
 
     /// Whether F certainly rises along every ray, or falls along every ray.
@@ -162,9 +172,31 @@ impl Form {
         Interval::point(self.t).minus(value.over(self.slope.interval()))
     }
 
-    /// About where the root is on the ray that is `across` columns and `along` rows off the middle.
-    pub(super) fn estimate(&self, across: f64, along: f64) -> f64 {
-        let value = self.value.middle + across * self.by_column.middle + along * self.by_row.middle;
-        self.t - value / self.slope.middle
+    /// About where the roots are, ray by ray.
+    pub(super) fn model(&self) -> Model {
+        let slope = self.slope.middle;
+        let [t, by_column, by_row] =
+            [self.value, self.by_column, self.by_row].map(|ball| -ball.middle / slope);
+        // From 0 = value + a·by_column + b·by_row + rest + (root − t)·slope for numbers of the balls.
+        let off = self.value.radius + self.vague + self.slope.radius * self.length();
+        let rounded = ROUNDING * (self.value.middle.abs() + self.across + self.t * slope.abs());
+        Model { t: self.t + t, by_column, by_row, uncertainty: (1.0 + ROUNDING) * (off + rounded) / slope.abs() }
+    }
+}
+
+/// About where the root of a ray is that is a columns and b rows off the middle of a beam: at `t` + a·`by_column` +
+/// b·`by_row`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Model {
+    t: f64,
+    by_column: f64,
+    by_row: f64,
+    /// How far from there a root may be in the stretch on which the form holds.
+    pub(super) uncertainty: f64,
+}
+
+impl Model {
+    pub(super) fn at(&self, across: f64, along: f64) -> f64 {
+        self.t + (across * self.by_column + along * self.by_row)
     }
 }

@@ -13,11 +13,11 @@
 //! whatever beams it goes through, so that the first root found is its first root.
 
 mod area;
-mod bundle;
+mod beam;
 mod form;
 mod pixels;
+mod spread;
 mod subdivision;
 
-pub(super) use bundle::Bundle;
-pub(crate) use pixels::Pixel;
+pub(crate) use subdivision::Memory;
 pub(super) use subdivision::Subdivision;

@@ -6,18 +6,29 @@ use glam::DVec3;
 use iso_expr::interval::{round_down, round_up};
 use iso_expr::{Decoration, Interval, Program};
 
-use super::area::Area;
-use super::form::{Form, ROUNDING};
+use super::beam::Beam;
+use super::form::{Form, Model, ROUNDING};
 use super::subdivision::{Part, Subdivision};
 use crate::certified::clip::Clip;
-use crate::certified::kernels::Kernels;
-use crate::{Hit, Kernel, Outcome, Span, Workspace};
+use crate::{Hit, Kernel, Outcome, Ray, Span, Workspace};
 
 /// How many values of F a ray is given at most before it is searched for its own.
 const STEPS: usize = 10;
 
 /// An enclosure of a root no wider than this many times what rounding of F alone makes it is as narrow as it gets.
 const ROUNDINGS: f64 = 2.0;
+
+/// Beams of so many columns and rows are not cut just since not all of their rays have a root.
+const SMALL: usize = 4;
+
+/// Of beams of more columns or rows only the corners are asked whether they hit.
+const LARGEST_COUNTED: usize = 16;
+
+/// A larger beam is cut when more rays are likely to be followed in vain.
+const DOUBTFUL: usize = 16;
+
+/// How uneven the slope of F may be over a beam whose rays are followed each for its own.
+const UNEVEN: f64 = 0.6;
 
 /// Shorter kernels are made for a part when it has so many rays.
 const MANY: usize = 64;
@@ -27,6 +38,7 @@ const MANY: usize = 64;
 pub(crate) struct Pixel {
     /// Which ray of the tile.
     place: usize,
+    ray: Ray,
     /// Where F is known to be monotone inside the region.
     reach: Span,
     /// Where a root is looked for: everything before it is free of roots.
@@ -63,51 +75,97 @@ enum Verdict {
 }
 
 impl Subdivision<'_> {
+    /// Goes on with a stretch on which F is monotone along every ray.
+    pub(super) fn follow(&mut self, part: &Part, form: &Form) {
+        let roots = form.roots();
+        let stretch = part.stretch;
+        let narrowed = Span { start: stretch.start.max(roots.lo), end: stretch.end.min(roots.hi) };
+        if narrowed.start > narrowed.end {
+            return;
+        }
+        let part = Part { stretch: narrowed, ..*part };
+        let area = self.memory.beams[part.beam].area;
+        let is_small = area.width.max(area.height) <= SMALL;
+        let model = form.model();
+        if form.unevenness() < UNEVEN && (is_small || self.most_hit(&part, &model)) {
+            self.follow_each(part, form, &model);
+        } else if !is_small {
+            self.divide_beam(part.beam, narrowed);
+        } else if narrowed.end - narrowed.start < 0.5 * (stretch.end - stretch.start) {
+            self.examine(part.beam..part.beam + 1, narrowed, 1);
+        } else {
+            self.divide(&part);
+        }
+    }
+
+    /// Whether few rays of a part may have a root, but are likely to have none. Of large parts only the corners are asked.
+    fn most_hit(&self, part: &Part, model: &Model) -> bool {
+        let Beam { area, radii: [across, along], .. } = self.memory.beams[part.beam];
+        let Span { start, end } = part.stretch;
+        if area.width.max(area.height) > LARGEST_COUNTED {
+            let corners = [(-across, -along), (across, -along), (-across, along), (across, along)];
+            return corners.into_iter().all(|(a, b)| (start..=end).contains(&model.at(a, b)));
+        }
+        let mut doubtful = 0;
+        for row in area.rows() {
+            let open = &self.memory.open[row * self.tile.width()..];
+            for column in area.columns() {
+                let (a, b) = area.offset(column, row);
+                let t = model.at(a, b);
+                let may_hit = start - model.uncertainty <= t && t <= end + model.uncertainty;
+                doubtful += usize::from(open[column] && may_hit && !(start <= t && t <= end));
+            }
+        }
+        doubtful <= DOUBTFUL
+    }
+
     /// Ends or goes on with each ray of a part by its root there.
-    pub(super) fn follow_each(&mut self, mut part: Part, form: &Form) {
+    fn follow_each(&mut self, mut part: Part, form: &Form, model: &Model) {
         part.kernels = self.kernels_for(&part, form);
         let part = &part;
         let Some(sight) = self.sight(part, form) else { return self.search_each(part) };
-        let mut pixels = std::mem::take(&mut self.workspace.pixels);
+        let mut pixels = std::mem::take(&mut self.memory.pixels);
         pixels.clear();
-        self.start(part, form, &mut pixels);
+        self.start(part, form, model, &mut pixels);
         for step in 1..=STEPS {
             if pixels.is_empty() {
                 break;
             }
             self.approach(part, &mut pixels, &sight, step == STEPS);
         }
-        self.workspace.pixels = pixels;
+        self.memory.pixels = pixels;
     }
 
-    /// The kernels for the rays of a part: shorter ones made for this part alone, where so many rays may gain.
-    fn kernels_for(&self, part: &Part, form: &Form) -> Arc<Kernels> {
-        let Area { width, height, .. } = part.beam.area;
-        let kernels = &part.kernels;
-        if !kernels.may_be_shortened() || width * height < MANY {
-            return Arc::clone(kernels);
+    /// The number of the kernels for the rays of a part: shorter ones made for this part alone, where so many rays may gain.
+    fn kernels_for(&mut self, part: &Part, form: &Form) -> usize {
+        let beam = &self.memory.beams[part.beam];
+        let kernels = &self.kernels[part.kernels];
+        if !kernels.may_be_shortened() || beam.area.width * beam.area.height < MANY {
+            return part.kernels;
         }
-        let bounds = part.beam.bounds(form.reach, &self.certified.region).map(|(lo, hi)| outwards(lo, hi));
-        let shortened = bounds.and_then(|bounds| kernels.shortened(bounds));
-        shortened.map_or_else(|| Arc::clone(kernels), Arc::new)
+        let bounds = beam.bounds(form.reach, &self.certified.region).map(|(lo, hi)| outwards(lo, hi));
+        let Some(shortened) = bounds.and_then(|bounds| kernels.shortened(bounds)) else { return part.kernels };
+        self.kernels.push(Arc::new(shortened));
+        self.kernels.len() - 1
     }
 
     /// What values say over a part. `None` when rounding is not bounded there.
     fn sight(&mut self, part: &Part, form: &Form) -> Option<Sight> {
         let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
-        let (lo, hi) = part.beam.bounds(form.reach, &self.certified.region)?;
+        let (beam, kernels) = (&self.memory.beams[part.beam], &self.kernels[part.kernels]);
+        let (lo, hi) = beam.bounds(form.reach, &self.certified.region)?;
         let sides = outwards(lo, hi);
         boxes.clear();
         boxes.push(sides.map(|side| side.lo).into(), sides.map(|side| side.hi).into());
-        boxes.evaluate(part.kernels.rounding(), scratch, 5);
+        boxes.evaluate(kernels.rounding(), scratch, 5);
         counters.box_evaluations += 1;
-        counters.operations += part.kernels.operations(Kernel::RoundingBounds);
+        counters.operations += kernels.operations(Kernel::RoundingBounds);
         let decoration = |output| boxes.decorated(output, 0).decoration;
         let is_known = decoration(0) == Decoration::Common
             && (1..5).all(|output| decoration(output) >= Decoration::Defined);
         let magnitude = |output| boxes.interval(output, 0).magnitude();
         let gradient = DVec3::from_array([2, 3, 4].map(magnitude));
-        let way = form.reach.end * part.beam.directions.largest();
+        let way = form.reach.end * beam.directions.size;
         let points = gradient.dot(way + lo.abs().max(hi.abs()) + f64::MIN_POSITIVE);
         let error = (1.0 + ROUNDING) * Program::ROUNDING_UNIT * (magnitude(1) + points);
 
@@ -124,20 +182,24 @@ impl Subdivision<'_> {
         })
     }
 
-    /// The rays of a part that are still followed. Those that may have a root so near to a face of the region that no
-    /// point inside is known are searched each for its own.
-    fn start(&mut self, part: &Part, form: &Form, pixels: &mut Vec<Pixel>) {
-        let Part { beam, stretch, is_inside, .. } = part;
-        for row in beam.area.rows() {
-            for column in beam.area.columns() {
-                let place = row * self.bundle.area.width + column;
-                if !self.open[place] {
+    /// The rays of a part that are still followed and may have a root there. Those that may have one so near to a face of the
+    /// region that no point inside is known are searched each for its own.
+    fn start(&mut self, part: &Part, form: &Form, model: &Model, pixels: &mut Vec<Pixel>) {
+        let area = self.memory.beams[part.beam].area;
+        for row in area.rows() {
+            for column in area.columns() {
+                let place = row * self.tile.width() + column;
+                let (across, along) = area.offset(column, row);
+                let t = model.at(across, along);
+                let Span { start, end } = part.stretch;
+                let misses = t + model.uncertainty < start || end < t - model.uncertainty;
+                if misses || !self.memory.open[place] {
                     continue;
                 }
-                let (mut wanted, mut reach) = (*stretch, form.reach);
-                if !is_inside {
-                    let clip = Clip::new(&self.certified.region, &self.bundle.rays[place]);
-                    let Some(Clip { outer, inner }) = clip else { continue };
+                let ray = self.tile.ray(column, row);
+                let (mut wanted, mut reach) = (part.stretch, form.reach);
+                if !part.is_inside {
+                    let Some(Clip { outer, inner }) = Clip::new(&self.certified.region, &ray) else { continue };
                     wanted = common(wanted, outer);
                     reach = common(reach, inner);
                 }
@@ -145,12 +207,11 @@ impl Subdivision<'_> {
                     continue;
                 }
                 if reach.start > reach.end {
-                    self.search_one(place, wanted, &part.kernels);
+                    self.search_one((column, row), wanted, part.kernels);
                     continue;
                 }
-                let (across, along) = beam.area.offset(column, row);
-                let t = form.estimate(across, along).max(reach.start).min(reach.end);
-                pixels.push(Pixel { place, reach, wanted, t, value: f64::NAN, step: f64::NAN });
+                let t = t.max(reach.start).min(reach.end);
+                pixels.push(Pixel { place, ray, reach, wanted, t, value: f64::NAN, step: f64::NAN });
             }
         }
     }
@@ -159,11 +220,12 @@ impl Subdivision<'_> {
     /// are searched each for its own.
     fn approach(&mut self, part: &Part, pixels: &mut Vec<Pixel>, sight: &Sight, is_last: bool) {
         let Workspace { points, scratch, counters, .. } = &mut *self.workspace;
+        let kernels = &self.kernels[part.kernels];
         points.clear();
-        points.extend(pixels.iter().map(|pixel| self.bundle.rays[pixel.place].at(pixel.t)));
+        points.extend(pixels.iter().map(|pixel| pixel.ray.at(pixel.t)));
         counters.trace_evaluations += pixels.len() as u64;
-        counters.operations += pixels.len() as u64 * part.kernels.operations(Kernel::Values);
-        let values = points.evaluate(part.kernels.points(), scratch, 1);
+        counters.operations += pixels.len() as u64 * kernels.operations(Kernel::Values);
+        let values = points.evaluate(kernels.points(), scratch, 1);
         let mut lost = Vec::new();
         let mut kept = 0;
         for number in 0..pixels.len() {
@@ -177,13 +239,14 @@ impl Subdivision<'_> {
                 Verdict::Free => {}
                 Verdict::Hit(hit) => {
                     self.outcomes[pixel.place] = Outcome::Hit(hit);
-                    self.open[pixel.place] = false;
+                    self.memory.open[pixel.place] = false;
                 }
             }
         }
         pixels.truncate(kept);
         for pixel in lost {
-            self.search_one(pixel.place, pixel.wanted, &part.kernels);
+            let (column, row) = (pixel.place % self.tile.width(), pixel.place / self.tile.width());
+            self.search_one((column, row), pixel.wanted, part.kernels);
         }
     }
 }

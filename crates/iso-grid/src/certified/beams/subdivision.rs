@@ -1,19 +1,22 @@
 //! The subdivision of a tile into beams and of beams into stretches.
 
-use std::rc::Rc;
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec3;
+use iso_expr::Interval;
 
 use super::area::Area;
-use super::bundle::{Beam, Bundle};
-use super::form::Form;
+use super::beam::{Beam, count_in};
+use super::form::{Form, Gradient};
+use super::pixels::Pixel;
 use crate::certified::Certified;
 use crate::certified::cells::Cell;
 use crate::certified::classify::free_of_zero;
 use crate::certified::clip::Clip;
 use crate::certified::kernels::Kernels;
-use crate::{Kernel, Outcome, Region, Span, Workspace};
+use crate::raster::Rays;
+use crate::{Kernel, Outcome, Region, Span, Tile, Workspace};
 
 /// Into how many stretches a beam is cut at most, and so how many boxes a kernel is given at once.
 const SLICES: usize = 8;
@@ -25,12 +28,6 @@ const LONG: f64 = 2.0;
 /// Beams of so many columns and rows are not cut further, and left to their rays where F is not monotone.
 const SMALLEST: usize = 2;
 
-/// Beams of so many columns and rows are not cut just since not all of their rays have a root.
-const SMALL: usize = 4;
-
-/// How uneven the slope of F may be over a beam whose rays are followed each for its own.
-const UNEVEN: f64 = 0.6;
-
 /// By how much of their length stretches overlap, so that a root near an end lies well inside one of them.
 const OVERLAP: f64 = 1.0 / 16.0;
 /// The least overlap, as part of the tile's farthest distance.
@@ -40,40 +37,96 @@ const LEAST_OVERLAP: f64 = 1.0 / (1u64 << 30) as f64;
 const WORK_LIMIT: u64 = 64;
 
 /// A stretch of a beam that may hold roots.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
-    pub(super) beam: Rc<Beam>,
+    /// The beam's number.
+    pub(super) beam: usize,
     pub(super) stretch: Span,
-    form: Option<Form>,
+    pub(super) form: Option<Form>,
     /// Whether all of it lies in the region, and a little more at both ends too.
     pub(super) is_inside: bool,
-    pub(super) kernels: Arc<Kernels>,
+    /// The number of kernels that hold on it.
+    pub(super) kernels: usize,
 }
 
 /// A stretch of a beam, and a box around its part in the region.
+#[derive(Clone, Copy, Debug)]
 struct Slab {
-    beam: Rc<Beam>,
+    /// The beam's number.
+    beam: usize,
     stretch: Span,
     /// The stretch and a little more at both ends.
     reach: Span,
     lo: DVec3,
     hi: DVec3,
+    /// The middle of `reach`, and a point of the box that is in the middle of the beam there where that is in the region.
+    middle: (f64, DVec3),
     is_inside: bool,
+    /// The number of kernels that hold on the box.
+    kernels: usize,
 }
 
 impl Slab {
     /// `None` when it lies outside the region.
-    fn new(beam: &Rc<Beam>, stretch: Span, least_overlap: f64, region: &Region) -> Option<Self> {
+    fn new(
+        (number, beam): (usize, &Beam),
+        stretch: Span,
+        least_overlap: f64,
+        region: &Region,
+    ) -> Option<Self> {
         let overlap = (OVERLAP * (stretch.end - stretch.start)).max(least_overlap);
         let reach = Span { start: (stretch.start - overlap).max(0.0), end: stretch.end + overlap };
-        let (lo, hi) = beam.bounds(reach, region)?;
-        let is_inside = (lo, hi) == beam.bounds_in_space(reach);
-        Some(Self { beam: Rc::clone(beam), stretch, reach, lo, hi, is_inside })
+        let (lo_in_space, hi_in_space) = beam.bounds_in_space(reach);
+        let (lo, hi) = (lo_in_space.max(region.min()), hi_in_space.min(region.max()));
+        let t = 0.5 * (reach.start + reach.end);
+        let middle = beam.origins.middle + t * beam.directions.middle;
+        lo.cmple(hi).all().then(|| Self {
+            beam: number,
+            stretch,
+            reach,
+            lo,
+            hi,
+            middle: (t, middle.clamp(lo, hi)),
+            is_inside: lo == lo_in_space && hi == hi_in_space,
+            kernels: 0,
+        })
+    }
+}
+
+/// A slab on which F is monotone along every ray, or several in a row.
+#[derive(Clone, Copy, Debug)]
+struct Followed {
+    slab: Slab,
+    gradient: Gradient,
+    form: Form,
+}
+
+impl Followed {
+    /// `None` when F may not be monotone, or the slab is cut by the region, so that the middle of its box may be elsewhere than
+    /// that of the beam.
+    fn new(slab: &Slab, gradient: Option<Gradient>, form: Option<Form>) -> Option<Self> {
+        let form = form.filter(|form| form.is_monotone() && slab.is_inside)?;
+        Some(Self { slab: *slab, gradient: gradient?, form })
     }
 
-    /// A point of the box, in the middle of the beam where that is in the region.
-    fn center(&self) -> DVec3 {
-        let t = 0.5 * (self.reach.start + self.reach.end);
-        (self.beam.origins.middle + t * self.beam.directions.middle).clamp(self.lo, self.hi)
+    /// This one and the one right behind it as one, if roots may lie on both sides of their border; `value` encloses F in the
+    /// middle of this one.
+    ///
+    /// The sums of vectors as near to the middle ones as the beam's origins are and of products of t with such directions form a
+    /// convex set for any stretch of t; those of this stretch are in one box, those of the other in the other. So the mean value
+    /// theorem holds with the gradients of both.
+    fn joined(&self, behind: &Self, beam: &Beam, value: Interval) -> Option<(Self, Form)> {
+        let (near, far) = (&self.slab, &behind.slab);
+        let border = near.stretch.end;
+        let are_neighbours = near.beam == far.beam && border == far.stretch.start;
+        if !are_neighbours || self.form.roots().hi < border || border < behind.form.roots().lo {
+            return None;
+        }
+        let gradient = self.gradient.hull(&behind.gradient);
+        let stretch = Span { start: near.stretch.start, end: far.stretch.end };
+        let reach = Span { start: near.reach.start, end: far.reach.end };
+        let form = Form::new(beam, reach, near.middle, value, &gradient).filter(Form::is_monotone)?;
+        Some((Self { slab: Slab { stretch, reach, ..*near }, gradient, form }, form))
     }
 }
 
@@ -86,185 +139,227 @@ fn slices(span: Span, count: usize) -> impl DoubleEndedIterator<Item = Span> {
     (0..count).map(move |slice| Span { start: cut(slice), end: cut(slice + 1) })
 }
 
-/// The subdivision of a tile.
-pub(in crate::certified) struct Subdivision<'a> {
-    pub(super) certified: &'a Certified,
-    pub(super) workspace: &'a mut Workspace,
-    pub(super) bundle: &'a Bundle<'a>,
-    pub(super) outcomes: &'a mut [Outcome],
+/// Working memory for the subdivision of a tile.
+#[derive(Debug, Default)]
+pub(crate) struct Memory {
     /// Whether each ray's first root is still looked for.
     pub(super) open: Vec<bool>,
     /// What lies ahead. For each ray its stretches are in order, the nearest on top; everything before them is free of
     /// roots, and so is all between.
     ahead: Vec<Part>,
+    /// The beams that the tile was cut into so far.
+    pub(super) beams: Vec<Beam>,
+    slabs: Vec<Slab>,
+    pub(super) pixels: Vec<Pixel>,
+}
+
+/// The subdivision of a tile.
+pub(in crate::certified) struct Subdivision<'a> {
+    pub(super) certified: &'a Certified,
+    pub(super) workspace: &'a mut Workspace,
+    pub(super) tile: Tile<'a>,
+    pub(super) outcomes: &'a mut [Outcome],
+    pub(super) memory: Memory,
+    /// Kernels by number. The first hold everywhere.
+    pub(super) kernels: Vec<Arc<Kernels>>,
     /// How many more boxes may be enclosed.
     work_left: u64,
     least_overlap: f64,
 }
 
 impl<'a> Subdivision<'a> {
+    /// `None` when there are no rays, or they are not finite or out of all proportion.
     pub(in crate::certified) fn new(
         certified: &'a Certified,
         workspace: &'a mut Workspace,
-        bundle: &'a Bundle<'a>,
+        tile: Tile<'a>,
         outcomes: &'a mut [Outcome],
-    ) -> Self {
-        let rays = bundle.rays;
-        workspace.counters.rays += rays.len() as u64;
-        workspace.counters.rays_in_region += bundle.count_in(&certified.region, bundle.area);
-        outcomes.fill(Outcome::Miss);
-        Self {
-            certified,
-            workspace,
-            bundle,
-            outcomes,
-            open: vec![true; rays.len()],
-            ahead: Vec::new(),
-            work_left: WORK_LIMIT * rays.len() as u64,
-            least_overlap: 0.0,
+    ) -> Option<Self> {
+        let is_finite = match tile.rays {
+            Rays::Raster { .. } => true,
+            Rays::Listed(rays) => {
+                rays.iter().all(|ray| ray.origin.is_finite() && ray.direction.is_finite())
+            }
+        };
+        if tile.is_empty() || !is_finite {
+            return None;
         }
+        let area = Area { column: 0, row: 0, width: tile.width(), height: tile.height() };
+        let beam = Beam::new(&tile, area);
+        if !beam.is_proportionate() {
+            return None;
+        }
+        workspace.counters.rays += tile.len() as u64;
+        workspace.counters.rays_in_region += count_in(&certified.region, &tile, area);
+        outcomes.fill(Outcome::Miss);
+        let mut memory = std::mem::take(&mut workspace.tile);
+        memory.ahead.clear();
+        memory.beams.clear();
+        memory.beams.push(beam);
+        memory.open.clear();
+        memory.open.resize(tile.len(), true);
+        let kernels = vec![Arc::clone(&certified.kernels)];
+        let work_left = WORK_LIMIT * tile.len() as u64;
+        Some(Self { certified, workspace, tile, outcomes, memory, kernels, work_left, least_overlap: 0.0 })
     }
 
     /// Says of every ray how its search ends.
     pub(in crate::certified) fn run(mut self) {
-        let beam = Rc::new(self.bundle.beam(self.bundle.area));
-        let Some(stretch) = self.passage(&beam) else { return };
-        self.least_overlap = LEAST_OVERLAP * stretch.end;
-        let kernels = Arc::clone(&self.certified.kernels);
-        self.ahead.push(Part { beam, stretch, form: None, is_inside: false, kernels });
-        while let Some(part) = self.ahead.pop() {
+        if let Some(stretch) = self.passage() {
+            self.least_overlap = LEAST_OVERLAP * stretch.end;
+            self.memory.ahead.push(Part { beam: 0, stretch, form: None, is_inside: false, kernels: 0 });
+        }
+        while let Some(part) = self.memory.ahead.pop() {
             if self.certified.stop.is_requested() {
-                return;
+                break;
             }
-            if !self.is_open(part.beam.area) {
+            if !self.is_open(self.memory.beams[part.beam].area) {
                 continue;
             }
             match part.form {
                 _ if self.work_left == 0 => self.search_each(&part),
-                Some(form) if form.is_monotone() => self.follow(part, &form),
-                _ => self.divide(part),
+                Some(form) if form.is_monotone() => self.follow(&part, &form),
+                _ => self.divide(&part),
             }
         }
+        self.workspace.tile = self.memory;
     }
 
     /// A stretch that holds all of the tile's rays inside the region; `None` when they miss it.
-    fn passage(&self, beam: &Beam) -> Option<Span> {
+    fn passage(&self) -> Option<Span> {
         let region = &self.certified.region;
-        if let Some(passage) = beam.passage(region) {
+        if let Some(passage) = self.memory.beams[0].passage(region) {
             return (passage.start <= passage.end).then_some(passage);
         }
-        let spans = self.bundle.rays.iter().filter_map(|ray| Clip::new(region, ray)).map(|clip| clip.outer);
+        let spans = self.tile.rays().filter_map(|ray| Clip::new(region, &ray)).map(|clip| clip.outer);
         spans.reduce(|a, b| Span { start: a.start.min(b.start), end: a.end.max(b.end) })
     }
 
     /// Whether some ray of `area` is still followed.
     fn is_open(&self, area: Area) -> bool {
-        area.rows().any(|row| self.open[row * self.bundle.area.width..][area.columns()].contains(&true))
+        area.rows().any(|row| self.memory.open[row * self.tile.width()..][area.columns()].contains(&true))
     }
 
     /// Cuts a stretch when it is longer than the beam is wide, or else the beam.
-    fn divide(&mut self, part: Part) {
-        let Part { beam, stretch, .. } = &part;
-        let stretch = *stretch;
-        let (length, width) = beam.extent(stretch);
+    pub(super) fn divide(&mut self, part: &Part) {
+        let beam = &self.memory.beams[part.beam];
+        let (length, width) = beam.extent(part.stretch);
         let is_smallest = beam.area.width.max(beam.area.height) <= SMALLEST;
         if length > LONG * width && width > 0.0 {
             let count = (length / (LONG * width)).ceil().min(SLICES as f64) as usize;
-            self.examine(std::slice::from_ref(beam), stretch, count);
+            self.examine(part.beam..part.beam + 1, part.stretch, count);
         } else if !is_smallest {
-            self.examine(&self.quarters(beam), stretch, 1);
+            self.divide_beam(part.beam, part.stretch);
         } else {
-            self.search_each(&part);
+            self.search_each(part);
         }
     }
 
-    /// Goes on with a stretch on which F is monotone along every ray.
-    fn follow(&mut self, part: Part, form: &Form) {
-        let Part { beam, stretch, .. } = &part;
-        let roots = form.roots();
-        let narrowed = Span { start: stretch.start.max(roots.lo), end: stretch.end.min(roots.hi) };
-        if narrowed.start > narrowed.end {
-            return;
-        }
-        let length = |span: Span| span.end - span.start;
-        let is_small = beam.area.width.max(beam.area.height) <= SMALL;
-        let is_even = form.unevenness() < UNEVEN;
-        if is_even && (is_small || corners_hit(beam, form, narrowed)) {
-            self.follow_each(Part { stretch: narrowed, ..part }, form);
-        } else if !is_small {
-            self.examine(&self.quarters(beam), narrowed, 1);
-        } else if length(narrowed) < 0.5 * length(*stretch) {
-            self.examine(std::slice::from_ref(beam), narrowed, 1);
-        } else {
-            self.divide(Part { stretch: narrowed, ..part });
-        }
-    }
-
-    fn quarters(&self, beam: &Beam) -> Vec<Rc<Beam>> {
-        beam.area.quarters().map(|area| Rc::new(self.bundle.beam(area))).collect()
+    /// Cuts a beam.
+    pub(super) fn divide_beam(&mut self, beam: usize, stretch: Span) {
+        let beams = &mut self.memory.beams;
+        let first = beams.len();
+        let area = beams[beam].area;
+        beams.extend(area.quarters().map(|quarter| Beam::new(&self.tile, quarter)));
+        self.examine(first..self.memory.beams.len(), stretch, 1);
     }
 
     /// Looks at all beams, each cut into `count` stretches, and keeps the stretches that may hold roots.
-    fn examine(&mut self, beams: &[Rc<Beam>], stretch: Span, count: usize) {
-        let mut slabs: Vec<Slab> = beams
-            .iter()
-            .flat_map(|beam| slices(stretch, count).rev().map(move |stretch| (beam, stretch)))
-            .filter_map(|(beam, stretch)| {
+    pub(super) fn examine(&mut self, beams: Range<usize>, stretch: Span, count: usize) {
+        let mut slabs = std::mem::take(&mut self.memory.slabs);
+        slabs.clear();
+        for number in beams {
+            let beam = (number, &self.memory.beams[number]);
+            slabs.extend(slices(stretch, count).rev().filter_map(|stretch| {
                 Slab::new(beam, stretch, self.least_overlap, &self.certified.region)
-            })
-            .collect();
-        let places = &self.certified.places;
-        let kernels: Vec<_> = slabs.iter().map(|slab| places.kernels(slab.lo, slab.hi)).collect();
-        for kernels in kernels.chunk_by(Arc::ptr_eq) {
-            let rest = slabs.split_off(kernels.len());
-            self.keep_open(slabs, &kernels[0]);
-            slabs = rest;
+            }));
         }
+        if self.certified.places.are_asked() {
+            slabs.iter_mut().for_each(|slab| slab.kernels = self.kernels_on(slab.lo, slab.hi));
+        }
+        for slabs in slabs.chunk_by_mut(|a, b| a.kernels == b.kernels) {
+            self.keep_open(slabs);
+        }
+        self.memory.slabs = slabs;
     }
 
-    /// Encloses F over slabs that lie where `kernels` hold, and keeps those that may hold roots.
-    fn keep_open(&mut self, mut slabs: Vec<Slab>, kernels: &Arc<Kernels>) {
-        if kernels.may_be_shortened() {
+    /// The number of kernels that hold on a box.
+    fn kernels_on(&mut self, lo: DVec3, hi: DVec3) -> usize {
+        let found = self.certified.places.kernels(lo, hi);
+        let known = [0, self.kernels.len() - 1];
+        known.into_iter().find(|number| Arc::ptr_eq(&self.kernels[*number], &found)).unwrap_or_else(|| {
+            self.kernels.push(found);
+            self.kernels.len() - 1
+        })
+    }
+
+    /// Encloses F over slabs that lie where the same kernels hold, and keeps those that may hold roots.
+    fn keep_open(&mut self, mut slabs: &mut [Slab]) {
+        let Some(&Slab { kernels, .. }) = slabs.first() else { return };
+        if self.kernels[kernels].may_be_shortened() {
             // The gradient of a formula with branches takes much longer than its values, which often say enough.
-            self.drop_free(&mut slabs, kernels);
+            let count = self.drop_free(slabs);
+            slabs = &mut slabs[..count];
         }
-        self.enclose(&slabs, kernels);
-        let Workspace { boxes, centers, .. } = &*self.workspace;
-        for (number, slab) in slabs.into_iter().enumerate() {
+        self.enclose(slabs);
+        let mut behind: Option<Followed> = None;
+        for (number, slab) in slabs.iter().enumerate() {
+            let Workspace { boxes, centers, .. } = &*self.workspace;
             if free_of_zero(boxes.interval(0, number)) {
                 continue;
             }
-            let course = [0, 1, 2, 3].map(|output| boxes.decorated(output, number));
-            let form = Form::new(&slab.beam, slab.reach, slab.center(), centers.interval(0, number), course);
-            if form.as_ref().is_none_or(|form| !form.excludes_zero()) {
-                let Slab { beam, stretch, is_inside, .. } = slab;
-                self.ahead.push(Part { beam, stretch, form, is_inside, kernels: Arc::clone(kernels) });
+            let beam = &self.memory.beams[slab.beam];
+            let gradient = Gradient::new([0, 1, 2, 3].map(|output| boxes.decorated(output, number)));
+            let value = centers.interval(0, number);
+            let form = gradient.and_then(|gradient| Form::new(beam, slab.reach, slab.middle, value, &gradient));
+            if form.as_ref().is_some_and(Form::excludes_zero) {
+                continue;
             }
+            let Slab { beam: number, stretch, is_inside, kernels, .. } = *slab;
+            let mut part = Part { beam: number, stretch, form, is_inside, kernels };
+            let mut followed = Followed::new(slab, gradient, form);
+            if let (Some(near), Some(far)) = (&followed, &behind)
+                && let Some((joined, form)) = near.joined(far, beam, value)
+            {
+                self.memory.ahead.pop();
+                part = Part { stretch: joined.slab.stretch, form: Some(form), ..part };
+                followed = Some(joined);
+            }
+            self.memory.ahead.push(part);
+            behind = followed;
         }
     }
 
-    /// Drops the slabs over which the enclosure of F excludes zero.
-    fn drop_free(&mut self, slabs: &mut Vec<Slab>, kernels: &Kernels) {
+    /// Moves the slabs over which the enclosure of F does not exclude zero to the front, and counts them.
+    fn drop_free(&mut self, slabs: &mut [Slab]) -> usize {
         let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
+        let kernels = &self.kernels[slabs[0].kernels];
         boxes.clear();
         slabs.iter().for_each(|slab| boxes.push(slab.lo, slab.hi));
         boxes.evaluate(kernels.values(), scratch, 1);
         counters.box_evaluations += slabs.len() as u64;
         counters.operations += slabs.len() as u64 * kernels.operations(Kernel::ValueEnclosures);
         self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
-        let mut number = 0..;
-        slabs.retain(|_| number.next().is_some_and(|number| !free_of_zero(boxes.interval(0, number))));
+        let mut kept = 0;
+        for number in 0..slabs.len() {
+            if !free_of_zero(boxes.interval(0, number)) {
+                slabs[kept] = slabs[number];
+                kept += 1;
+            }
+        }
+        kept
     }
 
     /// Encloses F and its derivatives over each slab, and F at its center.
-    fn enclose(&mut self, slabs: &[Slab], kernels: &Kernels) {
+    fn enclose(&mut self, slabs: &[Slab]) {
+        let Some(&Slab { kernels, .. }) = slabs.first() else { return };
+        let kernels = &self.kernels[kernels];
         let Workspace { boxes, centers, scratch, counters, .. } = &mut *self.workspace;
         boxes.clear();
         centers.clear();
         for slab in slabs {
-            let center = slab.center();
             boxes.push(slab.lo, slab.hi);
-            centers.push(center, center);
+            centers.push(slab.middle.1, slab.middle.1);
         }
         boxes.evaluate(kernels.gradients(), scratch, 4);
         centers.evaluate(kernels.values(), scratch, 1);
@@ -277,43 +372,35 @@ impl<'a> Subdivision<'a> {
 
     /// Leaves a part to the search along single rays.
     pub(super) fn search_each(&mut self, part: &Part) {
-        for row in part.beam.area.rows() {
-            for column in part.beam.area.columns() {
-                let place = row * self.bundle.area.width + column;
-                if self.open[place] {
-                    self.search_one(place, part.stretch, &part.kernels);
+        let area = self.memory.beams[part.beam].area;
+        for row in area.rows() {
+            for column in area.columns() {
+                if self.memory.open[row * self.tile.width() + column] {
+                    self.search_one((column, row), part.stretch, part.kernels);
                 }
             }
         }
     }
 
-    /// Searches a stretch of one ray.
-    pub(super) fn search_one(&mut self, place: usize, stretch: Span, local: &Kernels) {
-        let ray = self.bundle.rays[place];
+    /// Searches a stretch of the ray in a column and a row, where the kernels of this number hold.
+    pub(super) fn search_one(&mut self, (column, row): (usize, usize), stretch: Span, kernels: usize) {
+        let ray = self.tile.ray(column, row);
         let Some(clip) = Clip::new(&self.certified.region, &ray) else { return };
         let outer = clip.outer;
         let stretch = Span { start: stretch.start.max(outer.start), end: stretch.end.min(outer.end) };
         if stretch.start > stretch.end {
             return;
         }
+        let local = &self.kernels[kernels];
         let outcome = self.certified.search(self.workspace, ray, clip, (Cell::SMALLEST, stretch), local);
         if outcome != Outcome::Miss {
-            self.end(place, outcome);
+            self.end(row * self.tile.width() + column, outcome);
         }
     }
 
     /// Notes how the search along a ray ends.
     pub(super) fn end(&mut self, place: usize, outcome: Outcome) {
         self.outcomes[place] = outcome;
-        self.open[place] = false;
+        self.memory.open[place] = false;
     }
-}
-
-/// Whether the rays at the corners of a beam are likely to have a root in `stretch`.
-fn corners_hit(beam: &Beam, form: &Form, stretch: Span) -> bool {
-    let [across, along] = beam.radii;
-    [(-across, -along), (across, -along), (-across, along), (across, along)].into_iter().all(|(a, b)| {
-        let t = form.estimate(a, b);
-        stretch.start <= t && t <= stretch.end
-    })
 }

@@ -1,0 +1,103 @@
+//! Beams: rectangles of a tile's rays.
+
+use glam::DVec3;
+use iso_expr::Interval;
+
+use super::area::Area;
+use super::spread::Spread;
+use crate::{Region, Span, Tile};
+
+/// Components beyond this size are left to rays one by one: below it nothing here overflows.
+const LARGEST: f64 = 1e100;
+
+/// What the roundings of a box's ends come to at most, as part of the ends.
+const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
+
+/// The rays of an area.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beam {
+    pub(super) area: Area,
+    /// How far columns and rows are from the middle of the area at most.
+    pub(super) radii: [f64; 2],
+    pub(super) origins: Spread,
+    pub(super) directions: Spread,
+}
+
+impl Beam {
+    /// The rays of a part of a tile.
+    pub(super) fn new(tile: &Tile<'_>, area: Area) -> Self {
+        let [origins, directions] = Spread::of(tile, area);
+        Self { area, radii: area.radii(), origins, directions }
+    }
+
+    /// Whether all components are finite, and of a size for which nothing overflows.
+    pub(super) fn is_proportionate(&self) -> bool {
+        [self.origins, self.directions].iter().all(|spread| spread.largest() <= LARGEST)
+    }
+
+    /// The corners of a box around the points of all rays in the region from `span.start` to `span.end`, which are not
+    /// negative. `None` when there are no such points.
+    pub(super) fn bounds(&self, span: Span, region: &Region) -> Option<(DVec3, DVec3)> {
+        let (lo, hi) = self.bounds_in_space(span);
+        let (lo, hi) = (lo.max(region.min()), hi.min(region.max()));
+        lo.cmple(hi).all().then_some((lo, hi))
+    }
+
+    /// The corners of a box around the points of all rays from `span.start` to `span.end`, which are not negative. It holds
+    /// the sums of all vectors as near to the middle ones as origins are and products of t with such directions, too.
+    pub(super) fn bounds_in_space(&self, span: Span) -> (DVec3, DVec3) {
+        let Self { origins: o, directions: d, .. } = self;
+        let (t, half) = (0.5 * (span.start + span.end), 0.5 * (span.end - span.start));
+        let middle = o.middle + t * d.middle;
+        let rounding = ROUNDINGS * (o.size + span.end * d.size) + DVec3::splat(f64::MIN_POSITIVE);
+        let radius = o.radius + half * d.middle.abs() + span.end * d.radius + rounding;
+        (middle - radius, middle + radius)
+    }
+
+    /// A stretch, from 0 on, that holds the part of every ray in the region, and ends before it starts when all miss it.
+    /// `None` when the beam is so wide that the faces of the region do not bound it.
+    pub(super) fn passage(&self, region: &Region) -> Option<Span> {
+        let mut passage = Span { start: 0.0, end: f64::INFINITY };
+        for axis in 0..3 {
+            let around = |spread: &Spread| {
+                let radius = spread.radius[axis];
+                Interval::point(spread.middle[axis]).plus(Interval { lo: -radius, hi: radius })
+            };
+            let directions = around(&self.directions);
+            if !directions.contains_zero() {
+                let faces = Interval { lo: region.min()[axis], hi: region.max()[axis] };
+                let t = faces.minus(around(&self.origins)).over(directions);
+                passage = Span { start: passage.start.max(t.lo), end: passage.end.min(t.hi) };
+            }
+        }
+        passage.end.is_finite().then_some(passage)
+    }
+
+    /// How long a stretch of the beam from `span.start` to `span.end` is, and how wide, in units of space.
+    pub(super) fn extent(&self, span: Span) -> (f64, f64) {
+        let middle = 0.5 * (span.start + span.end);
+        let [column, row] = self.across(middle);
+        let width = 2.0 * (self.radii[0] * column.length()).max(self.radii[1] * row.length());
+        ((span.end - span.start) * self.directions.middle.length(), width)
+    }
+
+    /// How far a column and a row move the point at `t`.
+    pub(super) fn across(&self, t: f64) -> [DVec3; 2] {
+        let (o, d) = (&self.origins, &self.directions);
+        [o.by_column + t * d.by_column, o.by_row + t * d.by_row]
+    }
+}
+
+/// How many rays of a part of a tile meet the region. As both are convex, rays whose corners meet it all do.
+pub(super) fn count_in(region: &Region, tile: &Tile<'_>, area: Area) -> u64 {
+    let meets = |(column, row): (usize, usize)| region.clip(&tile.ray(column, row)).is_some();
+    let count = (area.width * area.height) as u64;
+    if area.corners().into_iter().all(meets) {
+        return count;
+    }
+    let misses = |passage: Span| passage.start > passage.end;
+    if count == 1 || Beam::new(tile, area).passage(region).is_some_and(misses) {
+        return 0;
+    }
+    area.quarters().map(|quarter| count_in(region, tile, quarter)).sum()
+}

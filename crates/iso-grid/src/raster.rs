@@ -1,0 +1,128 @@
+//! Rays side by side: those of a picture, and those of a part of it.
+
+use glam::DVec3;
+
+use crate::Ray;
+
+/// The rays of a picture: one for each column and row, evenly spaced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Raster {
+    /// Parallel rays.
+    Parallel {
+        /// Where the ray in the middle of the picture begins.
+        middle: DVec3,
+        /// From where one ray begins to where its right neighbour does.
+        right: DVec3,
+        /// From where one ray begins to where its lower neighbour does.
+        down: DVec3,
+        /// Of all rays.
+        direction: DVec3,
+    },
+    /// Rays from one point, all with directions of length 1 up to rounding.
+    Spreading {
+        /// Where they begin.
+        eye: DVec3,
+        /// From the eye to the middle of the picture, a vector of length 1.
+        forward: DVec3,
+        /// From one pixel to its right neighbour, where the middle of the picture is at distance 1; perpendicular to
+        /// `forward`.
+        right: DVec3,
+        /// From one pixel to its lower neighbour there; perpendicular to `forward`.
+        down: DVec3,
+    },
+}
+
+impl Raster {
+    /// The ray `across` columns to the right of the middle of the picture and `along` rows below it.
+    pub fn ray(&self, across: f64, along: f64) -> Ray {
+        match *self {
+            Self::Parallel { middle, right, down, direction } => {
+                Ray { origin: middle + (across * right + along * down), direction }
+            }
+            Self::Spreading { eye, forward, right, down } => {
+                Ray { origin: eye, direction: (forward + (across * right + along * down)).normalize() }
+            }
+        }
+    }
+}
+
+/// Neighbouring rays, row by row from the top.
+#[derive(Clone, Copy, Debug)]
+pub struct Tile<'a> {
+    pub(crate) rays: Rays<'a>,
+    width: usize,
+    height: usize,
+}
+
+/// What tells a tile's rays.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Rays<'a> {
+    /// A raster, and where the first ray is in it.
+    Raster { raster: &'a Raster, across: f64, along: f64 },
+    /// All of them.
+    Listed(&'a [Ray]),
+}
+
+impl<'a> Tile<'a> {
+    /// The rays of `width` columns and `height` rows of a raster, of which the first one is `across` columns to the right
+    /// of the middle and `along` rows below it: whole or half numbers.
+    pub fn of(raster: &'a Raster, [across, along]: [f64; 2], width: usize, height: usize) -> Self {
+        Self { rays: Rays::Raster { raster, across, along }, width, height }
+    }
+
+    /// Any rays, `width` in each row. What is proven holds for all of them, but takes long where they are no neighbours.
+    ///
+    /// # Panics
+    /// When the last row is not full.
+    pub fn listed(rays: &'a [Ray], width: usize) -> Self {
+        assert!(rays.len().is_multiple_of(width), "a tile has full rows");
+        Self { rays: Rays::Listed(rays), width, height: rays.len().checked_div(width).unwrap_or(0) }
+    }
+
+    /// How many columns there are.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// How many rows there are.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// How many rays there are.
+    pub fn len(&self) -> usize {
+        self.width * self.height
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The ray in a column and a row, both counted from 0.
+    pub fn ray(&self, column: usize, row: usize) -> Ray {
+        match self.rays {
+            Rays::Raster { raster, across, along } => {
+                raster.ray(across + column as f64, along + row as f64)
+            }
+            Rays::Listed(rays) => rays[row * self.width + column],
+        }
+    }
+
+    /// The ray at a place, counted row by row.
+    pub fn ray_at(&self, place: usize) -> Ray {
+        self.ray(place % self.width, place / self.width)
+    }
+
+    /// All rays, row by row.
+    pub fn rays(&self) -> impl Iterator<Item = Ray> {
+        (0..self.height).flat_map(move |row| (0..self.width).map(move |column| self.ray(column, row)))
+    }
+}
+
+impl<'a> From<&'a [Ray]> for Tile<'a> {
+    /// The rays as one row.
+    fn from(rays: &'a [Ray]) -> Self {
+        Self::listed(rays, rays.len().max(1))
+    }
+}
