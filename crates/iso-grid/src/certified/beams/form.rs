@@ -10,6 +10,9 @@ use crate::Span;
 /// A few roundings, relative to what is rounded: more than any sum here takes.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
+/// How far slopes are from their middle at most when they are much alike, as part of it.
+const UNEVEN: f64 = 0.6;
+
 /// Numbers no farther from `middle` than `radius`, rounding included. A NaN or an infinite radius says nothing, and every
 /// comparison is written such that nothing follows from it.
 ///
@@ -161,9 +164,9 @@ impl Form {
         self.slope.excludes_zero()
     }
 
-    /// How far the slope is from that of its middle, as part of it.
-    pub(super) fn unevenness(&self) -> f64 {
-        self.slope.radius / self.slope.middle.abs()
+    /// Whether F is monotone with slopes so alike that the beam's rays can be followed each for its own.
+    pub(super) fn is_even(&self) -> bool {
+        self.slope.radius < UNEVEN * self.slope.middle.abs()
     }
 
     /// Where all roots lie, if F is monotone.

@@ -27,9 +27,6 @@ const LARGEST_COUNTED: usize = 16;
 /// A larger beam is cut when more rays are likely to be followed in vain.
 const DOUBTFUL: usize = 16;
 
-/// How uneven the slope of F may be over a beam whose rays are followed each for its own.
-const UNEVEN: f64 = 0.6;
-
 /// Shorter kernels are made for a part when it has so many rays.
 const MANY: usize = 64;
 
@@ -87,7 +84,7 @@ impl Subdivision<'_> {
         let area = self.memory.beams[part.beam].area;
         let is_small = area.width.max(area.height) <= SMALL;
         let model = form.model();
-        if form.unevenness() < UNEVEN && (is_small || self.most_hit(&part, &model)) {
+        if form.is_even() && (is_small || self.most_hit(&part, &model)) {
             self.follow_each(part, form, &model);
         } else if !is_small {
             self.divide_beam(part.beam, narrowed);

@@ -109,8 +109,8 @@ impl Followed {
         Some(Self { slab: *slab, gradient: gradient?, form })
     }
 
-    /// This one and the one right behind it as one, if roots may lie on both sides of their border; `value` encloses F in the
-    /// middle of this one.
+    /// This one and the one right behind it as one, if roots may lie on both sides of their border and their rays can be followed
+    /// together; `value` encloses F in the middle of this one.
     ///
     /// The sums of vectors as near to the middle ones as the beam's origins are and of products of t with such directions form a
     /// convex set for any stretch of t; those of this stretch are in one box, those of the other in the other. So the mean value
@@ -125,7 +125,7 @@ impl Followed {
         let gradient = self.gradient.hull(&behind.gradient);
         let stretch = Span { start: near.stretch.start, end: far.stretch.end };
         let reach = Span { start: near.reach.start, end: far.reach.end };
-        let form = Form::new(beam, reach, near.middle, value, &gradient).filter(Form::is_monotone)?;
+        let form = Form::new(beam, reach, near.middle, value, &gradient).filter(Form::is_even)?;
         Some((Self { slab: Slab { stretch, reach, ..*near }, gradient, form }, form))
     }
 }
