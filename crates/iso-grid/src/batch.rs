@@ -28,8 +28,12 @@ impl PointBatch {
         self.z.push(point.z);
     }
 
-    pub(crate) fn extend(&mut self, points: impl IntoIterator<Item = DVec3>) {
-        points.into_iter().for_each(|point| self.push(point));
+    /// The points of rays at one place of each, in place of all others.
+    pub(crate) fn replace<'a>(&mut self, places: impl Iterator<Item = (&'a Ray, f64)> + Clone) {
+        for (axis, coordinates) in [&mut self.x, &mut self.y, &mut self.z].into_iter().enumerate() {
+            coordinates.clear();
+            coordinates.extend(places.clone().map(|(ray, t)| ray.origin[axis] + t * ray.direction[axis]));
+        }
     }
 
     /// Adds the points of a ray at these places.
@@ -71,15 +75,14 @@ pub(crate) struct BoxBatch {
 }
 
 impl BoxBatch {
-    pub(crate) fn clear(&mut self) {
-        self.lo.iter_mut().chain(&mut self.hi).for_each(Vec::clear);
-    }
-
-    /// Adds the box with these corners.
-    pub(crate) fn push(&mut self, lo: DVec3, hi: DVec3) {
+    /// The boxes with these lower and upper corners, in place of all others.
+    pub(crate) fn replace<'a>(&mut self, corners: impl Iterator<Item = (&'a DVec3, &'a DVec3)> + Clone) {
         for axis in 0..3 {
-            self.lo[axis].push(lo[axis]);
-            self.hi[axis].push(hi[axis]);
+            let (lo, hi) = (&mut self.lo[axis], &mut self.hi[axis]);
+            lo.clear();
+            lo.extend(corners.clone().map(|(lo, _)| lo[axis]));
+            hi.clear();
+            hi.extend(corners.clone().map(|(_, hi)| hi[axis]));
         }
     }
 

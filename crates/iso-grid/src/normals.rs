@@ -4,7 +4,7 @@ use glam::DVec3;
 use iso_expr::{BatchKernel, CompileError, Scratch};
 
 use crate::batch::PointBatch;
-use crate::{Hit, Outcome, Ray, Surface, Tile, Workspace};
+use crate::{Counters, Hit, Outcome, Ray, Surface, Tile, Workspace};
 
 /// Hits whose gradients are asked for by one call of the kernel.
 const BATCH: usize = 256;
@@ -32,27 +32,73 @@ pub fn normals(
         tile.len() == outcomes.len() && tile.len() == normals.len(),
         "each ray has an outcome and a normal"
     );
-    let Workspace { scratch, counters, points, .. } = workspace;
     normals.fill(DVec3::NAN);
-    let found = outcomes.iter().enumerate();
-    let mut met: Vec<Met> = found.filter_map(|(place, outcome)| Met::new(tile, place, outcome)).collect();
-    if met.is_empty() {
+    if !outcomes.iter().any(|outcome| matches!(outcome, Outcome::Hit(_) | Outcome::Touch(_))) {
         return Ok(());
     }
     let kernel = &**surface.gradients()?;
-    let distances = std::iter::once(None).chain(APPROACH.map(Some));
-    for approach in distances {
-        counters.gradient_evaluations += met.len() as u64;
-        for met in met.chunks(BATCH) {
-            points.clear();
-            for met in met {
-                points.push(approach.map_or_else(|| met.point(), |power| met.point_in_front(power)));
-            }
-            unit_gradients(kernel, scratch, points, |number, normal| normals[met[number].place] = normal);
+    let Workspace { scratch, counters, points, .. } = workspace;
+    let mut gradients = Gradients { kernel, scratch, counters, points, places: Vec::with_capacity(BATCH) };
+    let mut others = Vec::new();
+    for (place, ((column, row), outcome)) in tile.positions().zip(outcomes).enumerate() {
+        match *outcome {
+            Outcome::Hit(hit) => gradients.ask(place, tile.ray(column, row).at(hit.t), normals),
+            // The gradient there may be nothing but rounding.
+            Outcome::Touch(hit) => others.push(Met { place, ray: tile.ray(column, row), hit }),
+            Outcome::Miss | Outcome::Undecided(_) => {}
         }
-        met.retain(|met| normals[met.place].is_nan());
+    }
+    gradients.answer(normals);
+    for (place, ((column, row), outcome)) in tile.positions().zip(outcomes).enumerate() {
+        if let (Outcome::Hit(hit), true) = (*outcome, normals[place].x.is_nan()) {
+            others.push(Met { place, ray: tile.ray(column, row), hit });
+        }
+    }
+    for approach in APPROACH {
+        others.iter().for_each(|met| gradients.ask(met.place, met.point_in_front(approach), normals));
+        gradients.answer(normals);
+        others.retain(|met| normals[met.place].is_nan());
     }
     Ok(())
+}
+
+/// Points whose gradients are asked for together.
+struct Gradients<'a> {
+    kernel: &'a dyn BatchKernel,
+    scratch: &'a mut Scratch,
+    counters: &'a mut Counters,
+    points: &'a mut PointBatch,
+    /// Where the normal of each point is to stand.
+    places: Vec<usize>,
+}
+
+impl Gradients<'_> {
+    /// Asks for the normal at a point, which is to stand at a place of `normals`.
+    fn ask(&mut self, place: usize, point: DVec3, normals: &mut [DVec3]) {
+        if self.places.is_empty() {
+            self.points.clear();
+        }
+        self.points.push(point);
+        self.places.push(place);
+        if self.places.len() == BATCH {
+            self.answer(normals);
+        }
+    }
+
+    /// Puts the normals asked for in their places, NaN where there is none.
+    fn answer(&mut self, normals: &mut [DVec3]) {
+        let count = self.places.len();
+        if count == 0 {
+            return;
+        }
+        self.counters.gradient_evaluations += count as u64;
+        let outputs = self.points.evaluate(self.kernel, self.scratch, 4);
+        let [x, y, z] = [1, 2, 3].map(|output| &outputs[output * count..][..count]);
+        for (number, place) in self.places.drain(..).enumerate() {
+            let gradient = DVec3::new(x[number], y[number], z[number]);
+            normals[place] = unit(gradient).unwrap_or(DVec3::NAN);
+        }
+    }
 }
 
 /// A point of the surface that a ray meets, and the ray's place.
@@ -60,23 +106,9 @@ struct Met {
     place: usize,
     ray: Ray,
     hit: Hit,
-    touches: bool,
 }
 
 impl Met {
-    fn new(tile: Tile<'_>, place: usize, outcome: &Outcome) -> Option<Self> {
-        match *outcome {
-            Outcome::Hit(hit) => Some(Self { place, ray: tile.ray_at(place), hit, touches: false }),
-            Outcome::Touch(hit) => Some(Self { place, ray: tile.ray_at(place), hit, touches: true }),
-            Outcome::Miss | Outcome::Undecided(_) => None,
-        }
-    }
-
-    /// The point itself. At a touch the gradient may be nothing but rounding, so there it is the nearest point in front.
-    fn point(&self) -> DVec3 {
-        if self.touches { self.point_in_front(APPROACH[0]) } else { self.ray.at(self.hit.t) }
-    }
-
     /// The point in front of the bracket by 2 to this power of the way to it, or of the bracket's length if that is more.
     fn point_in_front(&self, power: i32) -> DVec3 {
         let bracket = self.hit.bracket;
@@ -90,25 +122,13 @@ impl Met {
     }
 }
 
-/// Passes on each point's number and unit gradient, NaN where there is none.
-fn unit_gradients(
-    kernel: &dyn BatchKernel,
-    scratch: &mut Scratch,
-    points: &mut PointBatch,
-    mut pass: impl FnMut(usize, DVec3),
-) {
-    let count = points.len();
-    let outputs = points.evaluate(kernel, scratch, 4);
-    for number in 0..count {
-        let derivative = |axis: usize| outputs[(axis + 1) * count + number];
-        let gradient = DVec3::new(derivative(0), derivative(1), derivative(2));
-        pass(number, unit(gradient).unwrap_or(DVec3::NAN));
-    }
-}
-
-/// The vector's direction, whatever its length: it is scaled by its largest component first, so that no square overflows
-/// or underflows. `None` for zero and for what is not finite.
+/// The vector's direction, whatever its length: it is scaled by its largest component first where squares may overflow or
+/// underflow. `None` for zero and for what is not finite.
 fn unit(vector: DVec3) -> Option<DVec3> {
+    let square = vector.length_squared();
+    if (1e-200..1e200).contains(&square) {
+        return Some(square.sqrt().recip() * vector);
+    }
     let largest = vector.abs().max_element();
     (vector.is_finite() && largest > 0.0).then(|| (vector / largest).normalize())
 }

@@ -34,6 +34,7 @@ pub enum Raster {
 
 impl Raster {
     /// The ray `across` columns to the right of the middle of the picture and `along` rows below it.
+    #[inline]
     pub fn ray(&self, across: f64, along: f64) -> Ray {
         match *self {
             Self::Parallel { middle, right, down, direction } => {
@@ -100,6 +101,7 @@ impl<'a> Tile<'a> {
     }
 
     /// The ray in a column and a row, both counted from 0.
+    #[inline]
     pub fn ray(&self, column: usize, row: usize) -> Ray {
         match self.rays {
             Rays::Raster { raster, across, along } => {
@@ -109,14 +111,15 @@ impl<'a> Tile<'a> {
         }
     }
 
-    /// The ray at a place, counted row by row.
-    pub fn ray_at(&self, place: usize) -> Ray {
-        self.ray(place % self.width, place / self.width)
+    /// The column and the row of each ray, row by row.
+    pub fn positions(&self) -> impl Iterator<Item = (usize, usize)> {
+        let Self { width, height, .. } = *self;
+        (0..height).flat_map(move |row| (0..width).map(move |column| (column, row)))
     }
 
     /// All rays, row by row.
     pub fn rays(&self) -> impl Iterator<Item = Ray> {
-        (0..self.height).flat_map(move |row| (0..self.width).map(move |column| self.ray(column, row)))
+        self.positions().map(|(column, row)| self.ray(column, row))
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 /// The points `origin + t·direction`. The direction may have any length but zero; t is in units of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ray {
     /// Where t = 0.
     pub origin: DVec3,
@@ -13,13 +13,14 @@ pub struct Ray {
 
 impl Ray {
     /// The point at `t`.
+    #[inline]
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + t * self.direction
     }
 }
 
 /// A stretch of a ray, from `start` to `end`, both included.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Span {
     /// The smallest t.
     pub start: f64,

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use iso_grid::{Counters, Outcome};
+use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::Size;
@@ -145,11 +146,12 @@ impl Picture {
     }
 }
 
-fn filled<T: Clone>(wanted: bool, size: Size, value: T) -> Option<Vec<T>> {
+/// A layer, filled by all threads: what takes time is that memory is first touched.
+fn filled<T: Copy + Send + Sync>(wanted: bool, size: Size, value: T) -> Option<Vec<T>> {
     let mut buffer = Vec::new();
     if wanted {
         buffer.try_reserve_exact(size.pixels()).ok()?;
-        buffer.resize(size.pixels(), value);
+        (0..size.pixels()).into_par_iter().map(|_| value).collect_into_vec(&mut buffer);
     }
     Some(buffer)
 }

@@ -60,10 +60,12 @@ pub fn render(scene: &Scene<'_>, size: Size, progress: Progress<'_>) -> Result<P
     let layers = scene.plan.layers();
     let picture = Picture::with_room(size, layers).ok_or(RenderError::OutOfMemory(size))?;
     let finished = Mutex::new(Finished { picture, pixels: 0, trace: Duration::ZERO, shade: Duration::ZERO });
-    tiles(size).into_par_iter().try_for_each_init(Workspace::default, |workspace, area| {
-        let Some(tile) = Tile::render(scene, size, area, workspace)? else { return Ok(()) };
+    tiles(size).into_par_iter().try_for_each_init(Tile::default, |tile, area| {
+        if !tile.render(scene, size, area)? {
+            return Ok(());
+        }
         let mut finished = finished.lock().expect("no thread panics while it holds the picture");
-        finished.take(&tile);
+        finished.take(tile);
         progress(finished.pixels, size.pixels() as u64);
         Ok::<(), RenderError>(())
     })?;
@@ -72,7 +74,7 @@ pub fn render(scene: &Scene<'_>, size: Size, progress: Progress<'_>) -> Result<P
 }
 
 /// A rectangle of pixels.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Area {
     column: u32,
     row: u32,
@@ -94,62 +96,76 @@ fn tiles(size: Size) -> Vec<Area> {
         .collect()
 }
 
-/// A finished part of the picture, rows from top to bottom.
+/// A thread's part of the picture, rows from top to bottom: one tile after the other.
+#[derive(Default)]
 struct Tile {
+    workspace: Workspace,
     area: Area,
-    layers: Layers,
     outcomes: Vec<Outcome>,
-    points: Vec<DVec3>,
-    normals: Vec<DVec3>,
+    /// The layers that the picture keeps, and the normals it is shaded by.
     color: Vec<[u8; 3]>,
-    counters: Counters,
+    depth: Vec<f64>,
+    normals: Vec<DVec3>,
+    points: Vec<DVec3>,
+    statuses: Vec<Status>,
+    counts: StatusCounts,
     trace: Duration,
     shade: Duration,
 }
 
 impl Tile {
-    /// `None` when work was stopped before the tile was finished.
-    fn render(
-        scene: &Scene<'_>,
-        size: Size,
-        area: Area,
-        workspace: &mut Workspace,
-    ) -> Result<Option<Self>, RenderError> {
+    /// Whether it was finished before work was stopped.
+    fn render(&mut self, scene: &Scene<'_>, size: Size, area: Area) -> Result<bool, RenderError> {
         let stop = scene.surface.stop();
         if stop.is_requested() {
-            return Ok(None);
+            return Ok(false);
         }
         let mut watch = Stopwatch::start();
+        let Self { workspace, outcomes, normals: found_normals, .. } = self;
         let rays = scene.camera.tile(area.column, area.row, area.width, area.height);
-        let mut outcomes = vec![Outcome::Miss; rays.len()];
+        self.area = area;
+        outcomes.resize(rays.len(), Outcome::Miss);
         workspace.counters = Counters::default();
-        scene.tracer.trace_tile(workspace, rays, &mut outcomes);
+        scene.tracer.trace_tile(workspace, rays, outcomes);
         if stop.is_requested() {
-            return Ok(None);
+            return Ok(false);
         }
-        let trace = watch.lap();
-
-        let mut found_normals = Vec::new();
+        self.trace = watch.lap();
         if scene.plan.runs(Pass::Normals) {
             found_normals.resize(rays.len(), DVec3::NAN);
-            normals(scene.surface, workspace, rays, &outcomes, &mut found_normals)?;
+            normals(scene.surface, workspace, rays, outcomes, found_normals)?;
         }
-        let mut color = Vec::new();
         if scene.plan.runs(Pass::Shade) {
-            color.extend(rays.rays().enumerate().map(|(place, ray)| {
+            self.color.clear();
+            self.color.extend(rays.rays().enumerate().map(|(place, ray)| {
                 let (row, normal) = (area.row + place as u32 / area.width, found_normals[place]);
                 srgb_from_color(scene.shading.color(&outcomes[place], normal, ray.direction, row, size))
             }));
         }
-        let shade = watch.lap();
-        let counters = workspace.counters;
-        let layers = scene.plan.layers();
-        let mut points = Vec::new();
-        if layers.points {
-            let point = |(outcome, ray): (&Outcome, Ray)| found(outcome).map_or(DVec3::NAN, |t| ray.at(t));
-            points.extend(outcomes.iter().zip(rays.rays()).map(point));
+        self.note(scene.plan.layers(), rays);
+        self.shade = watch.lap();
+        Ok(true)
+    }
+
+    /// Takes from the outcomes what `layers` show.
+    fn note(&mut self, layers: Layers, rays: iso_grid::Tile<'_>) {
+        let outcomes = &self.outcomes;
+        let founds = || outcomes.iter().map(found);
+        if layers.depth {
+            self.depth.clear();
+            self.depth.extend(founds().map(|t| t.unwrap_or(f64::NAN)));
         }
-        Ok(Some(Self { area, layers, outcomes, points, normals: found_normals, color, counters, trace, shade }))
+        if layers.points {
+            self.points.clear();
+            let point = |(t, ray): (Option<f64>, Ray)| t.map_or(DVec3::NAN, |t| ray.at(t));
+            self.points.extend(founds().zip(rays.rays()).map(point));
+        }
+        if layers.statuses {
+            self.statuses.clear();
+            self.statuses.extend(outcomes.iter().map(Status::from));
+        }
+        self.counts = StatusCounts::default();
+        outcomes.iter().for_each(|outcome| self.counts.count(Status::from(outcome)));
     }
 }
 
@@ -158,6 +174,17 @@ fn found(outcome: &Outcome) -> Option<f64> {
     match outcome {
         Outcome::Hit(hit) | Outcome::Touch(hit) => Some(hit.t),
         Outcome::Miss | Outcome::Undecided(_) => None,
+    }
+}
+
+/// Copies a tile's pixels to their place in a layer that the picture keeps.
+fn put<T: Copy>(pixels: &[T], area: Area, layer: &mut [T], size: Size) {
+    if layer.is_empty() {
+        return;
+    }
+    let width = area.width as usize;
+    for (row, pixels) in (area.row..).zip(pixels.chunks_exact(width)) {
+        layer[size.offset(area.column, row)..][..width].copy_from_slice(pixels);
     }
 }
 
@@ -172,37 +199,15 @@ struct Finished {
 impl Finished {
     fn take(&mut self, tile: &Tile) {
         let picture = &mut self.picture;
-        let width = tile.area.width as usize;
-        for (line, row) in (tile.area.row..tile.area.row + tile.area.height).enumerate() {
-            let from = line * width..(line + 1) * width;
-            let start = picture.size.offset(tile.area.column, row);
-            let to = start..start + width;
-            if tile.layers.color {
-                picture.color[to.clone()].copy_from_slice(&tile.color[from.clone()]);
-            }
-            if tile.layers.normals {
-                picture.normals[to.clone()].copy_from_slice(&tile.normals[from.clone()]);
-            }
-            if tile.layers.points {
-                picture.points[to.clone()].copy_from_slice(&tile.points[from.clone()]);
-            }
-            if tile.layers.outcomes {
-                picture.outcomes[to.clone()].copy_from_slice(&tile.outcomes[from.clone()]);
-            }
-            for (place, pixel) in from.zip(to) {
-                if tile.layers.depth {
-                    picture.depth[pixel] = found(&tile.outcomes[place]).unwrap_or(f64::NAN);
-                }
-                if tile.layers.statuses {
-                    picture.statuses[pixel] = Status::from(&tile.outcomes[place]);
-                }
-            }
-        }
-        let mut counts = StatusCounts::default();
-        tile.outcomes.iter().for_each(|outcome| counts.count(Status::from(outcome)));
-        picture.counts += counts;
+        put(&tile.color, tile.area, &mut picture.color, picture.size);
+        put(&tile.depth, tile.area, &mut picture.depth, picture.size);
+        put(&tile.normals, tile.area, &mut picture.normals, picture.size);
+        put(&tile.points, tile.area, &mut picture.points, picture.size);
+        put(&tile.statuses, tile.area, &mut picture.statuses, picture.size);
+        put(&tile.outcomes, tile.area, &mut picture.outcomes, picture.size);
+        picture.counts += tile.counts;
         picture.counts.unfinished -= tile.outcomes.len() as u64;
-        picture.counters += tile.counters;
+        picture.counters += tile.workspace.counters;
         self.pixels += tile.outcomes.len() as u64;
         self.trace += tile.trace;
         self.shade += tile.shade;

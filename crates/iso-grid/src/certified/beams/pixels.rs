@@ -31,7 +31,7 @@ const DOUBTFUL: usize = 16;
 const MANY: usize = 64;
 
 /// A ray that may have a root.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Pixel {
     /// Which ray of the tile.
     place: usize,
@@ -42,9 +42,11 @@ pub(crate) struct Pixel {
     wanted: Span,
     /// Near the root, inside `reach`.
     t: f64,
-    /// F at the last place, and how far that is from `t`.
-    value: f64,
+    /// F at the last two places, NaN where that is unknown; how far `t` is from the last one; and how far t went there for each
+    /// unit of F.
+    values: [f64; 2],
     step: f64,
+    secant: f64,
 }
 
 /// What a double computed for F says about the root, all over a part.
@@ -63,8 +65,8 @@ struct Sight {
 enum Verdict {
     /// There is no root where one is looked for.
     Free,
-    /// There is one, narrowly enclosed.
-    Hit(Hit),
+    /// There is one: `wanted` encloses it, and t is about where it is.
+    Hit,
     /// Another place is nearer to the root.
     Open,
     /// Single values do not tell.
@@ -80,18 +82,18 @@ impl Subdivision<'_> {
         if narrowed.start > narrowed.end {
             return;
         }
-        let part = Part { stretch: narrowed, ..*part };
+        let part = &Part { stretch: narrowed, form: None, ..*part };
         let area = self.memory.beams[part.beam].area;
         let is_small = area.width.max(area.height) <= SMALL;
         let model = form.model();
-        if form.is_even() && (is_small || self.most_hit(&part, &model)) {
+        if form.is_even() && (is_small || self.most_hit(part, &model)) {
             self.follow_each(part, form, &model);
         } else if !is_small {
             self.divide_beam(part.beam, narrowed);
         } else if narrowed.end - narrowed.start < 0.5 * (stretch.end - stretch.start) {
             self.examine(part.beam..part.beam + 1, narrowed, 1);
         } else {
-            self.divide(&part);
+            self.divide(part);
         }
     }
 
@@ -103,32 +105,30 @@ impl Subdivision<'_> {
             let corners = [(-across, -along), (across, -along), (-across, along), (across, along)];
             return corners.into_iter().all(|(a, b)| (start..=end).contains(&model.at(a, b)));
         }
+        let (least, most) = (start - model.uncertainty, end + model.uncertainty);
         let mut doubtful = 0;
-        for row in area.rows() {
-            let open = &self.memory.open[row * self.tile.width()..];
-            for column in area.columns() {
-                let (a, b) = area.offset(column, row);
+        for (row, b) in area.rows().zip(halves_from(-along)) {
+            let open = &self.memory.open[row * self.tile.width()..][area.columns()];
+            for (is_open, a) in open.iter().zip(halves_from(-across)) {
                 let t = model.at(a, b);
-                let may_hit = start - model.uncertainty <= t && t <= end + model.uncertainty;
-                doubtful += usize::from(open[column] && may_hit && !(start <= t && t <= end));
+                let is_doubtful = (least <= t) & (t <= most) & ((t < start) | (end < t));
+                doubtful += usize::from(is_open & is_doubtful);
             }
         }
         doubtful <= DOUBTFUL
     }
 
     /// Ends or goes on with each ray of a part by its root there.
-    fn follow_each(&mut self, mut part: Part, form: &Form, model: &Model) {
-        part.kernels = self.kernels_for(&part, form);
-        let part = &part;
-        let Some(sight) = self.sight(part, form) else { return self.search_each(part) };
+    fn follow_each(&mut self, part: &Part, form: &Form, model: &Model) {
+        let kernels = self.kernels_for(part, form);
+        let Some(sight) = self.sight(part, form, kernels) else { return self.search_each(part) };
         let mut pixels = std::mem::take(&mut self.memory.pixels);
-        pixels.clear();
-        self.start(part, form, model, &mut pixels);
+        let mut count = self.start(part, form, model, &mut pixels);
         for step in 1..=STEPS {
-            if pixels.is_empty() {
+            if count == 0 {
                 break;
             }
-            self.approach(part, &mut pixels, &sight, step == STEPS);
+            count = self.approach(&mut pixels[..count], kernels, &sight, step == STEPS);
         }
         self.memory.pixels = pixels;
     }
@@ -146,14 +146,14 @@ impl Subdivision<'_> {
         self.kernels.len() - 1
     }
 
-    /// What values say over a part. `None` when rounding is not bounded there.
-    fn sight(&mut self, part: &Part, form: &Form) -> Option<Sight> {
+    /// What values by kernels of this number say over a part. `None` when rounding is not bounded there.
+    fn sight(&mut self, part: &Part, form: &Form, kernels: usize) -> Option<Sight> {
         let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
-        let (beam, kernels) = (&self.memory.beams[part.beam], &self.kernels[part.kernels]);
+        let (beam, kernels) = (&self.memory.beams[part.beam], &self.kernels[kernels]);
         let (lo, hi) = beam.bounds(form.reach, &self.certified.region)?;
         let sides = outwards(lo, hi);
-        boxes.clear();
-        boxes.push(sides.map(|side| side.lo).into(), sides.map(|side| side.hi).into());
+        let corners = [sides.map(|side| side.lo), sides.map(|side| side.hi)].map(DVec3::from_array);
+        boxes.replace(std::iter::once((&corners[0], &corners[1])));
         boxes.evaluate(kernels.rounding(), scratch, 5);
         counters.box_evaluations += 1;
         counters.operations += kernels.operations(Kernel::RoundingBounds);
@@ -179,79 +179,90 @@ impl Subdivision<'_> {
         })
     }
 
-    /// The rays of a part that are still followed and may have a root there. Those that may have one so near to a face of the
-    /// region that no point inside is known are searched each for its own.
-    fn start(&mut self, part: &Part, form: &Form, model: &Model, pixels: &mut Vec<Pixel>) {
-        let area = self.memory.beams[part.beam].area;
-        for row in area.rows() {
-            for column in area.columns() {
+    /// Puts the rays of a part that are still followed and may have a root there in front of `pixels`, and counts them. Those that
+    /// may have one so near to a face of the region that no point inside is known are searched each for its own.
+    fn start(&mut self, part: &Part, form: &Form, model: &Model, pixels: &mut Vec<Pixel>) -> usize {
+        let Beam { area, radii: [across, along], .. } = self.memory.beams[part.beam];
+        let room = area.width * area.height;
+        if pixels.len() < room {
+            pixels.resize(room, Pixel::default());
+        }
+        let least = part.stretch.start - model.uncertainty;
+        let most = part.stretch.end + model.uncertainty;
+        let mut count = 0;
+        for (row, b) in area.rows().zip(halves_from(-along)) {
+            for (column, a) in area.columns().zip(halves_from(-across)) {
                 let place = row * self.tile.width() + column;
-                let (across, along) = area.offset(column, row);
-                let t = model.at(across, along);
-                let Span { start, end } = part.stretch;
-                let misses = t + model.uncertainty < start || end < t - model.uncertainty;
-                if misses || !self.memory.open[place] {
+                let t = model.at(a, b);
+                if t < least || most < t || !self.memory.open[place] {
                     continue;
                 }
-                let ray = self.tile.ray(column, row);
-                let (mut wanted, mut reach) = (part.stretch, form.reach);
+                let pixel = &mut pixels[count];
+                pixel.ray = self.tile.ray(column, row);
+                (pixel.wanted, pixel.reach) = (part.stretch, form.reach);
                 if !part.is_inside {
-                    let Some(Clip { outer, inner }) = Clip::new(&self.certified.region, &ray) else { continue };
-                    wanted = common(wanted, outer);
-                    reach = common(reach, inner);
+                    let clip = Clip::new(&self.certified.region, &pixel.ray);
+                    let Some(Clip { outer, inner }) = clip else { continue };
+                    pixel.wanted = common(pixel.wanted, outer);
+                    pixel.reach = common(pixel.reach, inner);
                 }
-                if wanted.start > wanted.end {
+                if pixel.wanted.start > pixel.wanted.end {
                     continue;
                 }
-                if reach.start > reach.end {
+                if pixel.reach.start > pixel.reach.end {
+                    let wanted = pixel.wanted;
                     self.search_one((column, row), wanted, part.kernels);
                     continue;
                 }
-                let t = t.max(reach.start).min(reach.end);
-                pixels.push(Pixel { place, ray, reach, wanted, t, value: f64::NAN, step: f64::NAN });
+                pixel.place = place;
+                pixel.t = t.max(pixel.reach.start).min(pixel.reach.end);
+                pixel.values = [f64::NAN; 2];
+                count += 1;
             }
         }
+        count
     }
 
-    /// Takes F at each pixel's t, and keeps the pixels that are nearer to their roots by that. The last time, those
-    /// are searched each for its own.
-    fn approach(&mut self, part: &Part, pixels: &mut Vec<Pixel>, sight: &Sight, is_last: bool) {
+    /// Takes F at each pixel's t, and counts the pixels that are nearer to their roots by that, which are then in front. The last
+    /// time, those are searched each for its own.
+    fn approach(&mut self, pixels: &mut [Pixel], kernels: usize, sight: &Sight, is_last: bool) -> usize {
         let Workspace { points, scratch, counters, .. } = &mut *self.workspace;
-        let kernels = &self.kernels[part.kernels];
-        points.clear();
-        points.extend(pixels.iter().map(|pixel| pixel.ray.at(pixel.t)));
+        let of_part = &self.kernels[kernels];
+        points.replace(pixels.iter().map(|pixel| (&pixel.ray, pixel.t)));
         counters.trace_evaluations += pixels.len() as u64;
-        counters.operations += pixels.len() as u64 * kernels.operations(Kernel::Values);
-        let values = points.evaluate(kernels.points(), scratch, 1);
+        counters.operations += pixels.len() as u64 * of_part.operations(Kernel::Values);
+        let values = points.evaluate(of_part.points(), scratch, 1);
         let mut lost = Vec::new();
         let mut kept = 0;
         for number in 0..pixels.len() {
-            let mut pixel = pixels[number];
+            let pixel = &mut pixels[number];
             match pixel.look(values[number], sight) {
                 Verdict::Open if !is_last => {
-                    pixels[kept] = pixel;
+                    if kept < number {
+                        pixels[kept] = pixels[number];
+                    }
                     kept += 1;
                 }
-                Verdict::Open | Verdict::Lost => lost.push(pixel),
+                Verdict::Open | Verdict::Lost => lost.push((pixel.place, pixel.wanted)),
                 Verdict::Free => {}
-                Verdict::Hit(hit) => {
-                    self.outcomes[pixel.place] = Outcome::Hit(hit);
+                Verdict::Hit => {
+                    self.outcomes[pixel.place] = Outcome::Hit(Hit { t: pixel.t, bracket: pixel.wanted });
                     self.memory.open[pixel.place] = false;
                 }
             }
         }
-        pixels.truncate(kept);
-        for pixel in lost {
-            let (column, row) = (pixel.place % self.tile.width(), pixel.place / self.tile.width());
-            self.search_one((column, row), pixel.wanted, part.kernels);
+        for (place, wanted) in lost {
+            let (column, row) = (place % self.tile.width(), place / self.tile.width());
+            self.search_one((column, row), wanted, kernels);
         }
+        kept
     }
 }
 
 impl Pixel {
-    /// One step of the interval Newton method, for all slopes of the part at once, and one of the secant method, where
-    /// `value` was computed for F at t. All roots in reach lie in the result of the first, and if that lies in
-    /// reach itself, there is one; the second tells where it is about.
+    /// One step of the interval Newton method, for all slopes of the part at once, where `value` was computed for F at t. All
+    /// roots in reach lie in its result, and if that lies in reach itself, there is one. Where it is about, values so far tell.
+    #[inline]
     fn look(&mut self, value: f64, sight: &Sight) -> Verdict {
         let Sight { inverse, unevenness, blur, tolerance } = *sight;
         let offset = value * inverse;
@@ -262,22 +273,37 @@ impl Pixel {
         if root.end < self.wanted.start || self.wanted.end < root.start {
             return Verdict::Free;
         }
-        // The slope between the last two places, if it is one that F may have.
-        let secant = self.step / (value - self.value);
-        let is_slope = (secant - inverse).abs() <= unevenness * inverse.abs();
-        let nearer = if is_slope { self.t - value * secant } else { middle };
+        let nearer = self.interpolate(value, sight).unwrap_or(middle);
         if 2.0 * radius <= tolerance {
             let is_inside = self.reach.start <= root.start && root.end <= self.reach.end;
-            let t = nearer.max(root.start).min(root.end);
-            return if is_inside { Verdict::Hit(Hit { t, bracket: root }) } else { Verdict::Lost };
+            if !is_inside {
+                return Verdict::Lost;
+            }
+            self.t = nearer.max(root.start).min(root.end);
+            self.wanted = root;
+            return Verdict::Hit;
         }
         let next = nearer.max(self.reach.start).min(self.reach.end);
-        let step = next - self.t;
-        if step == 0.0 || !nearer.is_finite() {
-            return Verdict::Lost;
-        }
-        (self.t, self.value, self.step) = (next, value, step);
-        Verdict::Open
+        self.step = next - self.t;
+        self.t = next;
+        if self.step == 0.0 || !nearer.is_finite() { Verdict::Lost } else { Verdict::Open }
+    }
+
+    /// About where the root is by the last values, the newest of which is `value`, taken at t: by inverse linear and quadratic
+    /// interpolation (Brent, Algorithms for Minimization without Derivatives, 1973, chapter 4). `None` after the first one, and
+    /// when they tell of a slope that F does not have.
+    #[inline]
+    fn interpolate(&mut self, value: f64, sight: &Sight) -> Option<f64> {
+        let [before, last] = self.values;
+        let secant = self.step / (value - last);
+        let bend = value * last * (secant - self.secant) / (value - before);
+        (self.values, self.secant) = ([last, value], secant);
+        let is_slope = (secant - sight.inverse).abs() <= sight.unevenness * sight.inverse.abs();
+        is_slope.then(|| {
+            let linear = value * secant;
+            // A bend is a small correction, and none is known before the third value.
+            if 2.0 * bend.abs() < linear.abs() { self.t - linear + bend } else { self.t - linear }
+        })
     }
 }
 
@@ -285,6 +311,11 @@ impl Pixel {
 /// side.
 fn outwards(lo: DVec3, hi: DVec3) -> [Interval; 3] {
     [0, 1, 2].map(|axis| Interval { lo: round_down(round_down(lo[axis])), hi: round_up(round_up(hi[axis])) })
+}
+
+/// Numbers from a whole or half one on, one apart. Exact.
+fn halves_from(first: f64) -> impl Iterator<Item = f64> {
+    std::iter::successors(Some(first), |number| Some(number + 1.0))
 }
 
 /// What is in both; it ends before it starts when nothing is.

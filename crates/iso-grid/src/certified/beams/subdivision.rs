@@ -4,7 +4,6 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec3;
-use iso_expr::Interval;
 
 use super::area::Area;
 use super::beam::{Beam, count_in};
@@ -37,7 +36,7 @@ const LEAST_OVERLAP: f64 = 1.0 / (1u64 << 30) as f64;
 const WORK_LIMIT: u64 = 64;
 
 /// A stretch of a beam that may hold roots.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub(super) struct Part {
     /// The beam's number.
     pub(super) beam: usize,
@@ -93,41 +92,11 @@ impl Slab {
     }
 }
 
-/// A slab on which F is monotone along every ray, or several in a row.
-#[derive(Clone, Copy, Debug)]
-struct Followed {
-    slab: Slab,
+/// Gradients all over the part that is nearest on top, on which F is monotone along every ray and all of which lies in the
+/// region, so that the middle of its box is that of the beam.
+struct Behind {
     gradient: Gradient,
-    form: Form,
-}
-
-impl Followed {
-    /// `None` when F may not be monotone, or the slab is cut by the region, so that the middle of its box may be elsewhere than
-    /// that of the beam.
-    fn new(slab: &Slab, gradient: Option<Gradient>, form: Option<Form>) -> Option<Self> {
-        let form = form.filter(|form| form.is_monotone() && slab.is_inside)?;
-        Some(Self { slab: *slab, gradient: gradient?, form })
-    }
-
-    /// This one and the one right behind it as one, if roots may lie on both sides of their border and their rays can be followed
-    /// together; `value` encloses F in the middle of this one.
-    ///
-    /// The sums of vectors as near to the middle ones as the beam's origins are and of products of t with such directions form a
-    /// convex set for any stretch of t; those of this stretch are in one box, those of the other in the other. So the mean value
-    /// theorem holds with the gradients of both.
-    fn joined(&self, behind: &Self, beam: &Beam, value: Interval) -> Option<(Self, Form)> {
-        let (near, far) = (&self.slab, &behind.slab);
-        let border = near.stretch.end;
-        let are_neighbours = near.beam == far.beam && border == far.stretch.start;
-        if !are_neighbours || self.form.roots().hi < border || border < behind.form.roots().lo {
-            return None;
-        }
-        let gradient = self.gradient.hull(&behind.gradient);
-        let stretch = Span { start: near.stretch.start, end: far.stretch.end };
-        let reach = Span { start: near.reach.start, end: far.reach.end };
-        let form = Form::new(beam, reach, near.middle, value, &gradient).filter(Form::is_even)?;
-        Some((Self { slab: Slab { stretch, reach, ..*near }, gradient, form }, form))
-    }
+    reach: Span,
 }
 
 /// `count` parts of `span`, equally long.
@@ -216,9 +185,9 @@ impl<'a> Subdivision<'a> {
             if !self.is_open(self.memory.beams[part.beam].area) {
                 continue;
             }
-            match part.form {
+            match &part.form {
                 _ if self.work_left == 0 => self.search_each(&part),
-                Some(form) if form.is_monotone() => self.follow(&part, &form),
+                Some(form) if form.is_monotone() => self.follow(&part, form),
                 _ => self.divide(&part),
             }
         }
@@ -302,40 +271,59 @@ impl<'a> Subdivision<'a> {
             slabs = &mut slabs[..count];
         }
         self.enclose(slabs);
-        let mut behind: Option<Followed> = None;
+        let mut behind = None;
         for (number, slab) in slabs.iter().enumerate() {
-            let Workspace { boxes, centers, .. } = &*self.workspace;
-            if free_of_zero(boxes.interval(0, number)) {
-                continue;
-            }
-            let beam = &self.memory.beams[slab.beam];
-            let gradient = Gradient::new([0, 1, 2, 3].map(|output| boxes.decorated(output, number)));
-            let value = centers.interval(0, number);
-            let form = gradient.and_then(|gradient| Form::new(beam, slab.reach, slab.middle, value, &gradient));
-            if form.as_ref().is_some_and(Form::excludes_zero) {
-                continue;
-            }
-            let Slab { beam: number, stretch, is_inside, kernels, .. } = *slab;
-            let mut part = Part { beam: number, stretch, form, is_inside, kernels };
-            let mut followed = Followed::new(slab, gradient, form);
-            if let (Some(near), Some(far)) = (&followed, &behind)
-                && let Some((joined, form)) = near.joined(far, beam, value)
-            {
-                self.memory.ahead.pop();
-                part = Part { stretch: joined.slab.stretch, form: Some(form), ..part };
-                followed = Some(joined);
-            }
-            self.memory.ahead.push(part);
-            behind = followed;
+            behind = self.keep(slab, number, behind);
         }
+    }
+
+    /// Keeps a slab, the one of this number among those enclosed last, if it may hold roots, and joins it with the part behind it
+    /// if roots may lie on both sides of their border and their rays can be followed together.
+    ///
+    /// The sums of vectors as near to the middle ones as the beam's origins are and of products of t with such directions form a
+    /// convex set for any stretch of t; those of this stretch are in one box, those of the other in the other. So the mean value
+    /// theorem holds with the gradients of both.
+    fn keep(&mut self, slab: &Slab, number: usize, behind: Option<Behind>) -> Option<Behind> {
+        let Workspace { boxes, centers, .. } = &*self.workspace;
+        if free_of_zero(boxes.interval(0, number)) {
+            return None;
+        }
+        let beam = &self.memory.beams[slab.beam];
+        let value = centers.interval(0, number);
+        let gradient = Gradient::new([0, 1, 2, 3].map(|output| boxes.decorated(output, number)));
+        let form = gradient.as_ref().and_then(|gradient| {
+            Form::new(beam, slab.reach, slab.middle, value, gradient)
+        });
+        if form.as_ref().is_some_and(Form::excludes_zero) {
+            return None;
+        }
+        let is_monotone = slab.is_inside && form.as_ref().is_some_and(Form::is_monotone);
+        if let (true, Some(form), Some(gradient), Some(behind)) = (is_monotone, &form, &gradient, &behind)
+            && let Some(far) = self.memory.ahead.last_mut()
+            && far.beam == slab.beam
+            && far.stretch.start == slab.stretch.end
+            && form.roots().hi >= slab.stretch.end
+            && far.form.as_ref().is_some_and(|far| far.roots().lo <= slab.stretch.end)
+        {
+            let gradient = gradient.hull(&behind.gradient);
+            let reach = Span { start: slab.reach.start, end: behind.reach.end };
+            let joined = Form::new(beam, reach, slab.middle, value, &gradient);
+            if joined.as_ref().is_some_and(Form::is_even) {
+                far.stretch.start = slab.stretch.start;
+                far.form = joined;
+                return Some(Behind { gradient, reach });
+            }
+        }
+        let Slab { beam, stretch, reach, is_inside, kernels, .. } = *slab;
+        self.memory.ahead.push(Part { beam, stretch, form, is_inside, kernels });
+        gradient.filter(|_| is_monotone).map(|gradient| Behind { gradient, reach })
     }
 
     /// Moves the slabs over which the enclosure of F does not exclude zero to the front, and counts them.
     fn drop_free(&mut self, slabs: &mut [Slab]) -> usize {
         let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
         let kernels = &self.kernels[slabs[0].kernels];
-        boxes.clear();
-        slabs.iter().for_each(|slab| boxes.push(slab.lo, slab.hi));
+        boxes.replace(slabs.iter().map(|slab| (&slab.lo, &slab.hi)));
         boxes.evaluate(kernels.values(), scratch, 1);
         counters.box_evaluations += slabs.len() as u64;
         counters.operations += slabs.len() as u64 * kernels.operations(Kernel::ValueEnclosures);
@@ -355,12 +343,8 @@ impl<'a> Subdivision<'a> {
         let Some(&Slab { kernels, .. }) = slabs.first() else { return };
         let kernels = &self.kernels[kernels];
         let Workspace { boxes, centers, scratch, counters, .. } = &mut *self.workspace;
-        boxes.clear();
-        centers.clear();
-        for slab in slabs {
-            boxes.push(slab.lo, slab.hi);
-            centers.push(slab.middle.1, slab.middle.1);
-        }
+        boxes.replace(slabs.iter().map(|slab| (&slab.lo, &slab.hi)));
+        centers.replace(slabs.iter().map(|slab| (&slab.middle.1, &slab.middle.1)));
         boxes.evaluate(kernels.gradients(), scratch, 4);
         centers.evaluate(kernels.values(), scratch, 1);
         let enclosed = 2 * slabs.len() as u64;
