@@ -18,6 +18,8 @@ const MUCH_SHORTER: usize = 6;
 #[derive(Clone)]
 pub struct Surface {
     engine: Arc<dyn Engine>,
+    /// The engine for kernels that are run often, where that is another one.
+    many: Option<Arc<dyn Engine>>,
     value: Program,
     /// The surface of which this is what is left on a box.
     outer: Option<(Arc<Surface>, [Interval; 3])>,
@@ -86,6 +88,7 @@ impl Surface {
         assert_eq!(value.outputs().len(), 1, "a surface is where one function is zero");
         Self {
             engine,
+            many: None,
             value,
             outer: None,
             value_and_gradient: OnceLock::new(),
@@ -130,6 +133,23 @@ impl Surface {
         let value = self.value.shortened(domain)?;
         let outer = Some((Arc::clone(self), domain));
         Some(Self { outer, ..Self::new(self.engine.for_few_runs(), value).stopped_by(self.stop.clone()) })
+    }
+
+    /// A surface that is this one in some places, where F − C comes to `value`. Its kernels are made for few runs.
+    pub(crate) fn reduced_to(&self, value: Program) -> Self {
+        let many = Some(Arc::clone(self.many.as_ref().unwrap_or(&self.engine)));
+        Self { many, ..Self::new(self.engine.for_few_runs(), value).stopped_by(self.stop.clone()) }
+    }
+
+    /// The same surface with kernels that are made for many runs.
+    pub(crate) fn compiled_for_many_runs(&self) -> Self {
+        let engine = self.many.as_ref().unwrap_or(&self.engine);
+        let surface = Self::new(Arc::clone(engine), self.value.clone()).stopped_by(self.stop.clone());
+        Self {
+            value_and_gradient: self.value_and_gradient.clone(),
+            value_and_rounding: self.value_and_rounding.clone(),
+            ..surface
+        }
     }
 
     /// The program of F − C.

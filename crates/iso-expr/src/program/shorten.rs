@@ -4,7 +4,7 @@ use super::simplify::folded;
 use super::{Node, NodeId, Program};
 use crate::{Constant, Decorated, Decoration, Interval, Operation};
 
-/// A program is rebuilt when it keeps no more than this part of its nodes.
+/// A program is rebuilt when it keeps no more than this part of its nodes, or loses its last branch.
 const WORTHWHILE: f64 = 0.6;
 
 /// What a program that is shortened still computes.
@@ -30,7 +30,8 @@ enum Decision {
 impl Program {
     /// A program that computes, at every point of the box `domain`, the same doubles as this one, and means the same real
     /// function there, with what the box decides left out: the branches of minima, maxima and choices that are never taken,
-    /// absolute values of what keeps its sign, steps without a step inside. `None` when that would not be much shorter.
+    /// absolute values of what keeps its sign, steps without a step inside. `None` when that would neither be
+    /// much shorter nor lose the last branch.
     ///
     /// What is left out is defined and bounded all over the box, so that it could not have made anything undefined. This is
     /// the 'shortened tape' of Keeter (Massively Parallel Rendering of Complex Closed-Form Implicit Surfaces, 2020), with
@@ -49,12 +50,18 @@ impl Program {
         let decisions = self.decisions(domain, kept);
         let needed = self.needed_after(&decisions);
         let kept = needed.iter().filter(|needed| **needed).count();
-        (kept as f64 <= WORTHWHILE * self.nodes.len() as f64).then(|| self.rebuilt(&decisions, &needed))
+        let is_open = |(node, (decision, needed)): (&Node, (&Option<Decision>, &bool))| {
+            *needed && decision.is_none() && node.may_be_decided()
+        };
+        let has_branches = || self.nodes.iter().zip(decisions.iter().zip(&needed)).any(is_open);
+        let loses_branches = || self.has_branches() && !has_branches();
+        let is_worthwhile = kept as f64 <= WORTHWHILE * self.nodes.len() as f64 || loses_branches();
+        is_worthwhile.then(|| self.rebuilt(&decisions, &needed))
     }
 
     /// Whether it holds an operation that a box may decide.
     pub fn has_branches(&self) -> bool {
-        self.nodes.iter().any(|node| matches!(node, Node::Apply(operation, _) if may_be_decided(*operation)))
+        self.nodes.iter().any(Node::may_be_decided)
     }
 
     /// What the box decides, node by node.
@@ -140,12 +147,15 @@ impl Program {
     }
 }
 
-/// Whether [`decision`] may be something.
-fn may_be_decided(operation: Operation) -> bool {
-    use Operation as O;
-    let is_choice = matches!(operation, O::Minimum | O::Maximum | O::Absolute | O::Select);
-    let is_step = matches!(operation, O::Sign | O::Floor | O::Ceil | O::Round | O::Truncate);
-    is_choice || is_step || matches!(operation, O::Less | O::LessOrEqual | O::Equal)
+impl Node {
+    /// Whether [`decision`] may be something.
+    fn may_be_decided(&self) -> bool {
+        use Operation as O;
+        let Self::Apply(operation, _) = self else { return false };
+        let is_choice = matches!(operation, O::Minimum | O::Maximum | O::Absolute | O::Select);
+        let is_step = matches!(operation, O::Sign | O::Floor | O::Ceil | O::Round | O::Truncate);
+        is_choice || is_step || matches!(operation, O::Less | O::LessOrEqual | O::Equal)
+    }
 }
 
 /// What `operation` comes to where its operands and its result are enclosed like this.

@@ -1,7 +1,9 @@
 //! The kernels that proofs are made of.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use glam::DVec3;
 use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::{BatchKernel, BoxKernel, CompileError, Decorated, Decoration, Interval, Program, Scratch};
 
@@ -13,18 +15,75 @@ pub(super) const BATCH: usize = 8;
 /// About how much longer an interpreted operation takes than one in native code.
 const INTERPRETING: u64 = 4;
 
+/// What formulas of no more operations come to in some places is compiled, if it is asked for often enough.
+const SMALL: u64 = 200;
+
+/// After so many operations, interpreted, a formula would better have been compiled at once.
+const OFTEN: u64 = 1 << 20;
+
 /// An axis-parallel box.
 pub(super) type Bounds = [Interval; 3];
+
+/// The box with these corners.
+pub(super) fn bounds_between(lo: DVec3, hi: DVec3) -> Bounds {
+    [0, 1, 2].map(|axis| Interval { lo: lo[axis], hi: hi[axis] })
+}
 
 /// F at points and over boxes, F with its gradient over boxes, and [what rounding does to F](Program::with_rounding) there:
 /// everywhere, or on a box where F comes to something [shorter](Program::shortened).
 pub(super) struct Kernels {
-    surface: Arc<Surface>,
-    has_branches: bool,
+    formula: Arc<Formula>,
     /// Where they hold.
     domain: Bounds,
-    /// How many operations each takes, counted when first asked for.
+}
+
+/// F, or what it comes to in some places.
+pub(super) struct Formula {
+    /// Compiled before, or not to be compiled as long as it is seldom asked for.
+    surface: Arc<Surface>,
+    /// The same as native code, if it was asked for often.
+    compiled: OnceLock<Arc<Surface>>,
+    /// How many operations may still be interpreted before it is compiled; never to be compiled when that is `u64::MAX`.
+    patience: AtomicU64,
+    has_branches: bool,
+    /// How many operations each kernel takes, counted when first asked for.
     operations: [OnceLock<u64>; 5],
+}
+
+impl Formula {
+    fn new(surface: Surface, patience: u64) -> Self {
+        let has_branches = surface.program().has_branches();
+        let patience = AtomicU64::new(patience);
+        Self {
+            surface: Arc::new(surface),
+            compiled: OnceLock::new(),
+            patience,
+            has_branches,
+            operations: Default::default(),
+        }
+    }
+
+    /// What is to be called: both say the same, bit for bit.
+    fn surface(&self) -> &Surface {
+        self.compiled.get().unwrap_or(&self.surface)
+    }
+
+    /// Notes that so many operations were interpreted.
+    fn wear(&self, operations: u64) {
+        let before = self.patience.load(Ordering::Relaxed);
+        if before == u64::MAX || before == 0 {
+            return;
+        }
+        // It does not matter if threads that come by at once forget each other's operations; one of them takes the last.
+        let after = before.saturating_sub(operations);
+        let is_first = self.patience.compare_exchange(before, after, Ordering::Relaxed, Ordering::Relaxed).is_ok();
+        if after == 0 && is_first {
+            let surface = self.surface.compiled_for_many_runs();
+            if Kernel::OF_PROOFS.iter().all(|kernel| surface.compile(*kernel).is_ok()) {
+                self.compiled.get_or_init(|| Arc::new(surface));
+            }
+        }
+    }
 }
 
 /// F over a box, and its derivatives along the axes.
@@ -45,23 +104,40 @@ impl Kernels {
     /// When the engine cannot compile one.
     pub(super) fn of(surface: &Surface) -> Result<Self, CompileError> {
         Kernel::OF_PROOFS.iter().try_for_each(|kernel| surface.compile(*kernel))?;
-        Ok(Self::on([Interval::ENTIRE; 3], Arc::new(surface.clone())))
-    }
-
-    fn on(domain: Bounds, surface: Arc<Surface>) -> Self {
-        let has_branches = surface.program().has_branches();
-        Self { has_branches, surface, domain, operations: Default::default() }
+        let formula = Arc::new(Formula::new(surface.clone(), u64::MAX));
+        Ok(Self { formula, domain: [Interval::ENTIRE; 3] })
     }
 
     /// Shorter ones that hold on `domain`, a part of where these do; `None` where there are none. They are interpreted, for
     /// compiling takes longer than they run.
     pub(super) fn shortened(&self, domain: Bounds) -> Option<Self> {
-        Some(Self::on(domain, Arc::new(self.surface.shortened(domain)?)))
+        let surface = self.formula.surface.shortened(domain)?;
+        Some(Self { formula: Arc::new(Formula::new(surface, u64::MAX)), domain })
+    }
+
+    /// The same for what a small formula comes to: in many places it is one of `formulas`, or becomes one, and is compiled when it
+    /// is asked for often.
+    pub(super) fn shortened_to_one_of(&self, formulas: &Mutex<Vec<Arc<Formula>>>, domain: Bounds) -> Option<Self> {
+        let program = self.program().shortened(domain)?;
+        // Formulas are only ever put in whole.
+        let mut formulas = formulas.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = formulas.iter().find(|formula| *formula.surface.program() == program);
+        let formula = known.map(Arc::clone).unwrap_or_else(|| {
+            let formula = Arc::new(Formula::new(self.formula.surface.reduced_to(program), OFTEN));
+            formulas.push(Arc::clone(&formula));
+            formula
+        });
+        Some(Self { formula, domain })
     }
 
     /// Whether there is anything that a box may decide.
     pub(super) fn may_be_shortened(&self) -> bool {
-        self.has_branches
+        self.formula.has_branches
+    }
+
+    /// Whether the formula is so small that what it comes to in some places may be compiled.
+    pub(super) fn are_small(&self) -> bool {
+        self.operations(Kernel::Values) <= SMALL
     }
 
     /// Whether these, which are interpreted, take less time than `others` as native code. Where `others` are interpreted too the
@@ -72,31 +148,39 @@ impl Kernels {
 
     /// How many operations a kernel takes.
     pub(super) fn operations(&self, kernel: Kernel) -> u64 {
-        *self.operations[kernel as usize].get_or_init(|| self.surface.program_of(kernel).operations() as u64)
+        let Formula { operations, surface, .. } = &*self.formula;
+        *operations[kernel as usize].get_or_init(|| surface.program_of(kernel).operations() as u64)
+    }
+
+    /// Notes that a kernel is asked for so many points or boxes, and says how many operations that takes.
+    pub(super) fn charge(&self, kernel: Kernel, count: usize) -> u64 {
+        let operations = count as u64 * self.operations(kernel);
+        self.formula.wear(operations);
+        operations
     }
 
     pub(super) fn program(&self) -> &Program {
-        self.surface.program()
+        self.formula.surface.program()
     }
 
     /// F at points.
     pub(super) fn points(&self) -> &dyn BatchKernel {
-        &**compiled(self.surface.values())
+        &**compiled(self.formula.surface().values())
     }
 
     /// F over boxes.
     pub(super) fn values(&self) -> &dyn BoxKernel {
-        &**compiled(self.surface.value_enclosures())
+        &**compiled(self.formula.surface().value_enclosures())
     }
 
     /// F with its gradient over boxes.
     pub(super) fn gradients(&self) -> &dyn BoxKernel {
-        &**compiled(self.surface.gradient_enclosures())
+        &**compiled(self.formula.surface().gradient_enclosures())
     }
 
     /// F, what rounding does to it, and its gradient over boxes.
     pub(super) fn rounding(&self) -> &dyn BoxKernel {
-        &**compiled(self.surface.rounding_bounds())
+        &**compiled(self.formula.surface().rounding_bounds())
     }
 
     /// Whether they hold on all of a box.

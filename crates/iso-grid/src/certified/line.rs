@@ -39,7 +39,7 @@ impl<'a> Line<'a> {
         let boxes = self.boxes(stretches);
         let boxes = &boxes[..stretches.len()];
         let kernels = self.kernels_on(boxes);
-        self.operations += boxes.len() as u64 * kernels.operations(Kernel::ValueEnclosures);
+        self.operations += kernels.charge(Kernel::ValueEnclosures, boxes.len());
         kernels.enclosures(self.scratch, boxes)
     }
 
@@ -69,7 +69,7 @@ impl<'a> Line<'a> {
 
     fn jets(&mut self, boxes: &[Bounds]) -> [Jet; BATCH] {
         let kernels = self.kernels_on(boxes);
-        self.operations += boxes.len() as u64 * kernels.operations(Kernel::GradientEnclosures);
+        self.operations += kernels.charge(Kernel::GradientEnclosures, boxes.len());
         kernels.jets(self.scratch, boxes)
     }
 

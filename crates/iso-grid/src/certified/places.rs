@@ -1,13 +1,13 @@
 //! Kernels by place: where a box decides branches of F, what is left of F is kept for all rays that come by.
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, RwLock};
+use std::sync::{Arc, Mutex, RwLock};
 
 use glam::DVec3;
 use iso_expr::Interval;
 use rustc_hash::FxHashMap;
 
-use super::kernels::{Bounds, Kernels};
+use super::kernels::{Bounds, Formula, Kernels, bounds_between};
 use crate::{Kernel, Region};
 
 /// How often the region is halved along each axis at most.
@@ -31,6 +31,8 @@ pub(super) struct Places {
     /// Whether all is done with the whole formula.
     are_ignored: bool,
     known: RwLock<FxHashMap<Place, Arc<Kernels>>>,
+    /// What a small formula comes to in some of them.
+    formulas: Mutex<Vec<Arc<Formula>>>,
     /// How many operations may still be kept.
     room: AtomicU64,
 }
@@ -62,6 +64,7 @@ impl Places {
             extent: region.max() - region.min(),
             are_ignored: false,
             known: RwLock::default(),
+            formulas: Mutex::default(),
             room: AtomicU64::new(ROOM),
         }
     }
@@ -82,8 +85,7 @@ impl Places {
             return Arc::clone(&self.whole);
         }
         let found = self.at(self.around(lo, hi));
-        let bounds = [0, 1, 2].map(|axis| Interval { lo: lo[axis], hi: hi[axis] });
-        if found.cover(&bounds) && found.are_quicker_than(&self.whole) {
+        if found.cover(&bounds_between(lo, hi)) && (self.whole.are_small() || found.are_quicker_than(&self.whole)) {
             found
         } else {
             Arc::clone(&self.whole)
@@ -114,9 +116,6 @@ impl Places {
             next = place.parent();
         };
         for place in missing.into_iter().rev() {
-            if !found.may_be_shortened() {
-                break;
-            }
             found = self.find_out(place, found);
         }
         found
@@ -124,8 +123,13 @@ impl Places {
 
     /// What F comes to at a place in one where it comes to `outer`.
     fn find_out(&self, place: Place, outer: Arc<Kernels>) -> Arc<Kernels> {
-        let found = outer.shortened(self.bounds(place)).map_or(outer, Arc::new);
-        let operations = found.operations(Kernel::Values);
+        let found = match self.bounds(place) {
+            _ if !outer.may_be_shortened() => None,
+            bounds if self.whole.are_small() => outer.shortened_to_one_of(&self.formulas, bounds),
+            bounds => outer.shortened(bounds),
+        };
+        let operations = 1 + found.as_ref().map_or(0, |found| found.operations(Kernel::Values));
+        let found = found.map_or(outer, Arc::new);
         let room =
             self.room.try_update(Ordering::Relaxed, Ordering::Relaxed, |room| room.checked_sub(operations));
         // Without room it is found out anew each time: no result depends on what is kept.

@@ -89,9 +89,9 @@ impl Subdivision<'_> {
         if form.is_even() && (is_small || self.most_hit(part, &model)) {
             self.follow_each(part, form, &model);
         } else if !is_small {
-            self.divide_beam(part.beam, narrowed);
+            self.divide_beam(part);
         } else if narrowed.end - narrowed.start < 0.5 * (stretch.end - stretch.start) {
-            self.examine(part.beam..part.beam + 1, narrowed, 1);
+            self.examine(part.beam..part.beam + 1, (narrowed, 1), part.kernels);
         } else {
             self.divide(part);
         }
@@ -137,7 +137,8 @@ impl Subdivision<'_> {
     fn kernels_for(&mut self, part: &Part, form: &Form) -> usize {
         let beam = &self.memory.beams[part.beam];
         let kernels = &self.kernels[part.kernels];
-        if !kernels.may_be_shortened() || beam.area.width * beam.area.height < MANY {
+        let may_gain = kernels.may_be_shortened() && !kernels.are_small();
+        if !may_gain || beam.area.width * beam.area.height < MANY {
             return part.kernels;
         }
         let bounds = beam.bounds(form.reach, &self.certified.region).map(|(lo, hi)| outwards(lo, hi));
@@ -156,7 +157,7 @@ impl Subdivision<'_> {
         boxes.replace(std::iter::once((&corners[0], &corners[1])));
         boxes.evaluate(kernels.rounding(), scratch, 5);
         counters.box_evaluations += 1;
-        counters.operations += kernels.operations(Kernel::RoundingBounds);
+        counters.operations += kernels.charge(Kernel::RoundingBounds, 1);
         let decoration = |output| boxes.decorated(output, 0).decoration;
         let is_known = decoration(0) == Decoration::Common
             && (1..5).all(|output| decoration(output) >= Decoration::Defined);
@@ -230,7 +231,7 @@ impl Subdivision<'_> {
         let of_part = &self.kernels[kernels];
         points.replace(pixels.iter().map(|pixel| (&pixel.ray, pixel.t)));
         counters.trace_evaluations += pixels.len() as u64;
-        counters.operations += pixels.len() as u64 * of_part.operations(Kernel::Values);
+        counters.operations += of_part.charge(Kernel::Values, pixels.len());
         let values = points.evaluate(of_part.points(), scratch, 1);
         let mut lost = Vec::new();
         let mut kept = 0;

@@ -13,7 +13,7 @@ use crate::certified::Certified;
 use crate::certified::cells::Cell;
 use crate::certified::classify::free_of_zero;
 use crate::certified::clip::Clip;
-use crate::certified::kernels::Kernels;
+use crate::certified::kernels::{Kernels, bounds_between};
 use crate::raster::Rays;
 use crate::{Kernel, Outcome, Region, Span, Tile, Workspace};
 
@@ -216,25 +216,26 @@ impl<'a> Subdivision<'a> {
         let is_smallest = beam.area.width.max(beam.area.height) <= SMALLEST;
         if length > LONG * width && width > 0.0 {
             let count = (length / (LONG * width)).ceil().min(SLICES as f64) as usize;
-            self.examine(part.beam..part.beam + 1, part.stretch, count);
+            self.examine(part.beam..part.beam + 1, (part.stretch, count), part.kernels);
         } else if !is_smallest {
-            self.divide_beam(part.beam, part.stretch);
+            self.divide_beam(part);
         } else {
             self.search_each(part);
         }
     }
 
     /// Cuts a beam.
-    pub(super) fn divide_beam(&mut self, beam: usize, stretch: Span) {
+    pub(super) fn divide_beam(&mut self, Part { beam, stretch, kernels, .. }: &Part) {
         let beams = &mut self.memory.beams;
         let first = beams.len();
-        let area = beams[beam].area;
+        let area = beams[*beam].area;
         beams.extend(area.quarters().map(|quarter| Beam::new(&self.tile, quarter)));
-        self.examine(first..self.memory.beams.len(), stretch, 1);
+        self.examine(first..self.memory.beams.len(), (*stretch, 1), *kernels);
     }
 
-    /// Looks at all beams, each cut into `count` stretches, and keeps the stretches that may hold roots.
-    pub(super) fn examine(&mut self, beams: Range<usize>, stretch: Span, count: usize) {
+    /// Looks at a stretch of all beams, cut into `count`, and keeps the stretches that may hold roots. Kernels of the number
+    /// `kernels` may hold there.
+    pub(super) fn examine(&mut self, beams: Range<usize>, (stretch, count): (Span, usize), kernels: usize) {
         let mut slabs = std::mem::take(&mut self.memory.slabs);
         slabs.clear();
         for number in beams {
@@ -244,7 +245,9 @@ impl<'a> Subdivision<'a> {
             }));
         }
         if self.certified.places.are_asked() {
-            slabs.iter_mut().for_each(|slab| slab.kernels = self.kernels_on(slab.lo, slab.hi));
+            for slab in &mut slabs {
+                slab.kernels = self.kernels_on(slab.lo, slab.hi, kernels);
+            }
         }
         for slabs in slabs.chunk_by_mut(|a, b| a.kernels == b.kernels) {
             self.keep_open(slabs);
@@ -252,10 +255,14 @@ impl<'a> Subdivision<'a> {
         self.memory.slabs = slabs;
     }
 
-    /// The number of kernels that hold on a box.
-    fn kernels_on(&mut self, lo: DVec3, hi: DVec3) -> usize {
+    /// The number of kernels that hold on a box: those `around` it, if it decides nothing more there.
+    fn kernels_on(&mut self, lo: DVec3, hi: DVec3, around: usize) -> usize {
+        let kernels = &self.kernels[around];
+        if !kernels.may_be_shortened() && kernels.cover(&bounds_between(lo, hi)) {
+            return around;
+        }
         let found = self.certified.places.kernels(lo, hi);
-        let known = [0, self.kernels.len() - 1];
+        let known = [0, around, self.kernels.len() - 1];
         known.into_iter().find(|number| Arc::ptr_eq(&self.kernels[*number], &found)).unwrap_or_else(|| {
             self.kernels.push(found);
             self.kernels.len() - 1
@@ -326,7 +333,7 @@ impl<'a> Subdivision<'a> {
         boxes.replace(slabs.iter().map(|slab| (&slab.lo, &slab.hi)));
         boxes.evaluate(kernels.values(), scratch, 1);
         counters.box_evaluations += slabs.len() as u64;
-        counters.operations += slabs.len() as u64 * kernels.operations(Kernel::ValueEnclosures);
+        counters.operations += kernels.charge(Kernel::ValueEnclosures, slabs.len());
         self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
         let mut kept = 0;
         for number in 0..slabs.len() {
@@ -349,8 +356,8 @@ impl<'a> Subdivision<'a> {
         centers.evaluate(kernels.values(), scratch, 1);
         let enclosed = 2 * slabs.len() as u64;
         counters.box_evaluations += enclosed;
-        counters.operations += slabs.len() as u64
-            * (kernels.operations(Kernel::GradientEnclosures) + kernels.operations(Kernel::ValueEnclosures));
+        counters.operations += kernels.charge(Kernel::GradientEnclosures, slabs.len());
+        counters.operations += kernels.charge(Kernel::ValueEnclosures, slabs.len());
         self.work_left = self.work_left.saturating_sub(enclosed);
     }
 
