@@ -1,5 +1,6 @@
 //! Kernels over batches of boxes: a loop over pairs of boxes, one in each 128-bit lane.
 
+use std::collections::HashMap;
 use std::mem::offset_of;
 use std::sync::Arc;
 
@@ -7,11 +8,12 @@ use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{AbiParam, InstBuilder, MemFlagsData, Signature, Value, types};
 use cranelift_frontend::FunctionBuilder;
 use iso_expr::engine::{Boxes, Enclosures};
-use iso_expr::{BoxKernel, CompileError, Decorated, Decoration, Engine, Interpreter, Node, Program, Scratch};
+use iso_expr::{BoxKernel, CompileError, Decorated, Decoration, Engine, Interpreter, Node, Operation, Program, Scratch};
 
 use crate::code::{Blueprint, Compiled};
 use crate::domain::Domain;
 use crate::enclosures::{self, Enclosure};
+use crate::elementary;
 use crate::host::{self, Limits};
 use crate::lanes::{Lanes, Writer};
 use crate::symbols::Calls;
@@ -164,6 +166,7 @@ impl Round<'_, '_> {
     fn write(&mut self, calls: &mut Calls<'_>, program: &Program, ranges: &[Decorated]) {
         let is_large = program.operations() > LARGEST_WITH_LASTING_CONSTANTS;
         let mut room = None;
+        let mut waves = HashMap::new();
         let mut enclosures: Vec<Enclosure> = Vec::with_capacity(program.nodes().len());
         for (node, range) in program.nodes().iter().zip(ranges) {
             if is_large {
@@ -172,6 +175,16 @@ impl Round<'_, '_> {
             enclosures.push(match node {
                 Node::Variable(axis) => self.argument(*axis as usize, *range),
                 Node::Constant(_) => enclosures::constant(&mut self.writer, *range),
+                Node::Apply(operation @ (Operation::Sin | Operation::Cos), [operand, ..])
+                    if elementary::sines_and_cosines().is_some() =>
+                {
+                    let room = room.get_or_insert_with(|| Room::new(&mut self.writer));
+                    let both = waves.entry(*operand).or_insert_with(|| {
+                        let operand = &enclosures[operand.index()];
+                        room.call_for_both(&mut self.writer, calls, operand).expect("this machine has the function")
+                    });
+                    Enclosure { range: *range, ..both[usize::from(*operation == Operation::Cos)] }
+                }
                 Node::Apply(operation, operands) => {
                     let operands = operands.map(|id| enclosures[id.index()]);
                     let written = enclosures::apply(&mut self.writer, *operation, operands, *range);

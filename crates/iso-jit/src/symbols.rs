@@ -18,10 +18,16 @@ const IN_LANES: &str = "iso_lanes_";
 /// The function that applies interval extensions.
 const EXTEND: &str = "iso_extend";
 
+/// The function that applies the extensions of sine and cosine.
+const EXTEND_TO_BOTH: &str = "iso_extend_to_both";
+
 /// The address of the function called `name`, if it is one of ours.
 pub(crate) fn address(name: &str) -> Option<*const u8> {
     if name == EXTEND {
         return Some(trampoline::extend as *const u8);
+    }
+    if name == EXTEND_TO_BOTH {
+        return Some(trampoline::extend_to_both as *const u8);
     }
     if let Some(name) = name.strip_prefix(IN_LANES) {
         return elementary::function(operation(name)?).map(|function| function as *const u8);
@@ -72,6 +78,12 @@ impl<'a> Calls<'a> {
         let pointer = AbiParam::new(types::I64);
         let operands = vec![AbiParam::new(types::I8).uext(), pointer, pointer];
         self.declare(kernel, EXTEND.to_owned(), operands, Vec::new())
+    }
+
+    /// [`trampoline::extend_to_both`], to be called from `kernel`.
+    pub(crate) fn extend_to_both(&mut self, kernel: &mut Function) -> FuncRef {
+        let operands = vec![AbiParam::new(types::I64); 2];
+        self.declare(kernel, EXTEND_TO_BOTH.to_owned(), operands, Vec::new())
     }
 
     fn declare(

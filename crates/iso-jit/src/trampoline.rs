@@ -2,9 +2,11 @@
 
 use std::mem::offset_of;
 
-use cranelift_codegen::ir::{InstBuilder, StackSlot, StackSlotData, StackSlotKind, Type, types};
+use cranelift_codegen::ir::{InstBuilder, StackSlot, StackSlotData, StackSlotKind, Type, Value, types};
+use iso_expr::interval::sine_and_cosine_by_ends;
 use iso_expr::{Decorated, Decoration, Extension, Interval, Operation};
 
+use crate::elementary;
 use crate::enclosures::{Enclosure, known};
 use crate::lanes::Writer;
 use crate::symbols::Calls;
@@ -63,6 +65,31 @@ pub(crate) unsafe extern "C" fn extend(operation: Operation, operands: *const Pa
     result.set(1, if operands.iter().all(Pair::is_twice_the_same) { first } else { extended(1) });
 }
 
+/// Applies the extensions of sine and cosine to one operand over each of two boxes, and puts the ends of the results behind it: what
+/// is known of the operand is known of them. `function` computes the values at all ends at once. Native code calls it.
+///
+/// # Safety
+/// Behind `pairs` there is the operand and room for two results, and `function` is one that [`elementary::sines_and_cosines`] gave.
+pub(crate) unsafe extern "C" fn extend_to_both(function: elementary::InPlace, pairs: *mut [Pair; 3]) {
+    // SAFETY: all three are there.
+    let [operand, sine, cosine] = unsafe { &mut *pairs };
+    let mut ends = [0.0; elementary::WIDTH];
+    for lane in 0..2 {
+        (ends[lane], ends[2 + lane]) = (operand.lo[lane], -operand.minus_hi[lane]);
+    }
+    // SAFETY: this processor has the features that the function was compiled for.
+    unsafe { function(&mut ends) };
+    for lane in 0..2 {
+        let interval = Interval { lo: operand.lo[lane], hi: -operand.minus_hi[lane] };
+        let a = Decorated { interval, decoration: Decoration::Common };
+        let at_ends = |first: usize| [ends[first + lane], ends[first + 2 + lane]];
+        let found = sine_and_cosine_by_ends(a, at_ends(0), at_ends(4));
+        for (result, Decorated { interval, .. }) in [&mut *sine, &mut *cosine].into_iter().zip(found) {
+            (result.lo[lane], result.minus_hi[lane]) = (interval.lo, -interval.hi);
+        }
+    }
+}
+
 /// Room on a kernel's stack for the operands and the result of a call: the same for every call.
 pub(crate) struct Room(StackSlot);
 
@@ -88,15 +115,7 @@ impl Room {
         range: Decorated,
     ) -> Enclosure {
         for (place, operand) in operands.iter().enumerate() {
-            let known = operand.known(writer);
-            let start = place * size_of::<Pair>();
-            for (value, offset) in [
-                (operand.lo, start + offset_of!(Pair, lo)),
-                (operand.minus_hi, start + offset_of!(Pair, minus_hi)),
-                (known, start + offset_of!(Pair, known)),
-            ] {
-                writer.builder.ins().stack_store(types::I64, value, self.0, offset as i32);
-            }
+            self.store(writer, place, operand);
         }
         let result = MOST_OPERANDS * size_of::<Pair>();
         let index = writer.builder.ins().iconst(types::I8, operation.index() as i64);
@@ -104,20 +123,52 @@ impl Room {
         let address = writer.builder.ins().stack_addr(types::I64, self.0, result as i32);
         let extend = calls.extend(writer.builder.func);
         writer.builder.ins().call(extend, &[index, operands, address]);
-        // Lane by lane, as it was written: the processor forwards no wider load from narrower stores.
-        let mut load = |element: Type, offset: usize| {
-            let [low, high] = [0, size_of::<f64>()].map(|lane| {
-                let offset = (result + offset + lane) as i32;
-                writer.builder.ins().stack_load(types::I64, element, self.0, offset)
-            });
-            let pair = writer.builder.ins().scalar_to_vector(element.by(2).expect("a vector type"), low);
-            writer.builder.ins().insertlane(pair, high, 1)
-        };
-        Enclosure {
-            lo: load(types::F64, offset_of!(Pair, lo)),
-            minus_hi: load(types::F64, offset_of!(Pair, minus_hi)),
-            known: (range.decoration < Decoration::Common).then(|| load(types::I64, offset_of!(Pair, known))),
-            range,
+        let [lo, minus_hi] = [offset_of!(Pair, lo), offset_of!(Pair, minus_hi)]
+            .map(|offset| self.load(writer, types::F64, result + offset));
+        let known = (range.decoration < Decoration::Common)
+            .then(|| self.load(writer, types::I64, result + offset_of!(Pair, known)));
+        Enclosure { lo, minus_hi, known, range }
+    }
+
+    /// Writes a call of [`extend_to_both`], if this machine has a function for it. The ranges of the results are left to say.
+    pub(crate) fn call_for_both(
+        &self,
+        writer: &mut Writer<'_, '_>,
+        calls: &mut Calls<'_>,
+        operand: &Enclosure,
+    ) -> Option<[Enclosure; 2]> {
+        let function = elementary::sines_and_cosines()?;
+        self.store(writer, 0, operand);
+        let function = writer.builder.ins().iconst(types::I64, function as usize as i64);
+        let pairs = writer.builder.ins().stack_addr(types::I64, self.0, 0);
+        let extend = calls.extend_to_both(writer.builder.func);
+        writer.builder.ins().call(extend, &[function, pairs]);
+        Some([1, 2].map(|place| {
+            let [lo, minus_hi] = [offset_of!(Pair, lo), offset_of!(Pair, minus_hi)]
+                .map(|offset| self.load(writer, types::F64, place * size_of::<Pair>() + offset));
+            Enclosure { lo, minus_hi, ..*operand }
+        }))
+    }
+
+    /// Puts an operand in its place.
+    fn store(&self, writer: &mut Writer<'_, '_>, place: usize, operand: &Enclosure) {
+        let known = operand.known(writer);
+        let start = place * size_of::<Pair>();
+        for (value, offset) in [
+            (operand.lo, start + offset_of!(Pair, lo)),
+            (operand.minus_hi, start + offset_of!(Pair, minus_hi)),
+            (known, start + offset_of!(Pair, known)),
+        ] {
+            writer.builder.ins().stack_store(types::I64, value, self.0, offset as i32);
         }
+    }
+
+    /// Two elements, lane by lane, as they were written: the processor forwards no wider load from narrower stores.
+    fn load(&self, writer: &mut Writer<'_, '_>, element: Type, offset: usize) -> Value {
+        let [low, high] = [0, size_of::<f64>()].map(|lane| {
+            writer.builder.ins().stack_load(types::I64, element, self.0, (offset + lane) as i32)
+        });
+        let pair = writer.builder.ins().scalar_to_vector(element.by(2).expect("a vector type"), low);
+        writer.builder.ins().insertlane(pair, high, 1)
     }
 }

@@ -20,6 +20,7 @@ mod tests;
 
 pub use decoration::{Decorated, Decoration};
 pub use extension::Extension;
+pub use periodic::sine_and_cosine_by_ends;
 pub use rounding::{round_down, round_up};
 
 /// A closed interval of real numbers. Infinite ends stand for unbounded intervals; NaN ends for the empty set.

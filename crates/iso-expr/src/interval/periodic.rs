@@ -82,6 +82,26 @@ pub(crate) fn cos(a: Decorated) -> Decorated {
     Decorated { interval: wave(a.interval, &HALF_WAVES_OF_COSINE, core_math::cos), decoration: a.decoration }
 }
 
+/// The extensions of sine and cosine to the same operand, given their correctly rounded values at its lower and its upper end.
+///
+/// On less than π the sine turns at most once: where the cosine changes its sign. So does the cosine where the sine does.
+pub fn sine_and_cosine_by_ends(a: Decorated, sine: [f64; 2], cosine: [f64; 2]) -> [Decorated; 2] {
+    /// Less than π.
+    const SHORT: f64 = 3.0;
+    let Interval { lo, hi } = a.interval;
+    let is_reduced = lo == hi || a.interval.magnitude() <= LARGEST_REDUCED;
+    if !(lo <= hi && hi - lo < SHORT && is_reduced) {
+        return [sin(a), cos(a)];
+    }
+    let [sine_is_positive, cosine_is_positive] = [sine, cosine].map(|ends| ends.map(|value| value >= 0.0));
+    let turned = |[p, q]: [f64; 2], rises: [bool; 2]| Interval {
+        lo: if rises == [false, true] { -1.0 } else { greater(-1.0, round_down(lesser(q, p))) },
+        hi: if rises == [true, false] { 1.0 } else { lesser(1.0, round_up(greater(p, q))) },
+    };
+    let cosine_rises = sine_is_positive.map(|is_positive| !is_positive);
+    [turned(sine, cosine_is_positive), turned(cosine, cosine_rises)].map(|interval| Decorated { interval, ..a })
+}
+
 /// Undefined at its poles; anything where one is inside.
 pub(crate) fn tan(a: Decorated) -> Decorated {
     let Interval { lo, hi } = a.interval;
@@ -94,4 +114,40 @@ pub(crate) fn tan(a: Decorated) -> Decorated {
     }
     let interval = Interval { lo: round_down(core_math::tan(lo)), hi: round_up(core_math::tan(hi)) };
     Decorated::enclosing(interval, a.decoration)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    #[test]
+    fn values_at_the_ends_tell_the_same() {
+        let mut random = Random::new(11);
+        let quarters = |random: &mut Random| std::f64::consts::FRAC_PI_2 * (random.below(40) as f64 - 20.0);
+        for round in 0..400_000 {
+            let lo = match round % 4 {
+                0 => random.between(-20.0, 20.0),
+                1 => quarters(&mut random),
+                2 => random.double(),
+                _ => 0.0,
+            };
+            let other = match random.below(6) {
+                0 => lo,
+                1 => lo + 10f64.powf(random.between(-17.0, 1.0)),
+                2 => lo - 10f64.powf(random.between(-17.0, 1.0)),
+                3 => quarters(&mut random),
+                4 => random.double(),
+                _ => -0.0,
+            };
+            let a = Decorated::argument(lo.min(other), lo.max(other));
+            let ends = [a.interval.lo, a.interval.hi];
+            let found = sine_and_cosine_by_ends(a, ends.map(core_math::sin), ends.map(core_math::cos));
+            let bits = |enclosure: Decorated| {
+                let Interval { lo, hi } = enclosure.interval;
+                ([lo, hi].map(|end| if end.is_nan() { 0 } else { end.to_bits() }), enclosure.decoration)
+            };
+            assert_eq!(found.map(bits), [sin(a), cos(a)].map(bits), "{a:?}");
+        }
+    }
 }

@@ -33,6 +33,15 @@ pub(crate) fn function(operation: Operation) -> Option<InPlace> {
     return None;
 }
 
+/// The function that replaces the first four of eight arguments by their sines, and puts their cosines behind, under the same
+/// condition.
+pub(crate) fn sines_and_cosines() -> Option<InPlace> {
+    #[cfg(target_arch = "x86_64")]
+    return x86::of_both().next();
+    #[cfg(not(target_arch = "x86_64"))]
+    return None;
+}
+
 /// A value somewhere in hi + lo ± error.
 #[derive(Clone, Copy)]
 struct Approximation {
@@ -42,16 +51,16 @@ struct Approximation {
     error: f64,
 }
 
-/// Approximates where that decides the rounding, else calls the function.
+/// Approximates where that decides the rounding, else calls the function. Both are given the lane.
 #[inline(always)]
 fn round(
     arguments: &mut [f64; WIDTH],
-    approximate: impl Fn(f64) -> Approximation,
-    function: impl Fn(f64) -> f64,
+    approximate: impl Fn(usize, f64) -> Approximation,
+    function: impl Fn(usize, f64) -> f64,
 ) {
     let (mut least, mut most) = ([0.0; WIDTH], [0.0; WIDTH]);
     for lane in 0..WIDTH {
-        let Approximation { hi, lo, error } = approximate(arguments[lane]);
+        let Approximation { hi, lo, error } = approximate(lane, arguments[lane]);
         least[lane] = hi + (lo - error);
         most[lane] = hi + (lo + error);
     }
@@ -61,7 +70,7 @@ fn round(
         for lane in 0..WIDTH {
             // An unknown value is not even equal to itself.
             if least[lane] != most[lane] {
-                least[lane] = function(arguments[lane]);
+                least[lane] = function(lane, arguments[lane]);
             }
         }
     }
@@ -100,6 +109,15 @@ mod x86 {
         wide.into_iter().chain(narrow)
     }
 
+    /// The versions of [`sines_and_cosines`](super::sines_and_cosines) that this processor runs, the fastest first.
+    pub(super) fn of_both() -> impl Iterator<Item = InPlace> {
+        let has_wide = is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq");
+        let has_narrow = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
+        let wide = has_wide.then_some(avx512::sines_and_cosines as InPlace);
+        let narrow = has_narrow.then_some(avx2::sines_and_cosines as InPlace);
+        wide.into_iter().chain(narrow)
+    }
+
     /// The functions, compiled for processors with certain features.
     macro_rules! compiled_for {
         ($module:ident, $features:literal) => {
@@ -116,12 +134,24 @@ mod x86 {
 
                 #[target_feature(enable = $features)]
                 extern "C" fn sin(arguments: &mut [f64; WIDTH]) {
-                    round(arguments, |x| sine::sin(x), |x| scalar(Operation::Sin)(x));
+                    round(arguments, |_, x| sine::sin(x), |_, x| scalar(Operation::Sin)(x));
                 }
 
                 #[target_feature(enable = $features)]
                 extern "C" fn cos(arguments: &mut [f64; WIDTH]) {
-                    round(arguments, |x| sine::cos(x), |x| scalar(Operation::Cos)(x));
+                    round(arguments, |_, x| sine::cos(x), |_, x| scalar(Operation::Cos)(x));
+                }
+
+                #[target_feature(enable = $features)]
+                pub(super) extern "C" fn sines_and_cosines(arguments: &mut [f64; WIDTH]) {
+                    let (sines, cosines) = arguments.split_at_mut(WIDTH / 2);
+                    cosines.copy_from_slice(sines);
+                    let is_sine = |lane| lane < WIDTH / 2;
+                    round(
+                        arguments,
+                        |lane, x| sine::sin_or_cos(is_sine(lane), x),
+                        |lane, x| scalar(if is_sine(lane) { Operation::Sin } else { Operation::Cos })(x),
+                    );
                 }
             }
         };

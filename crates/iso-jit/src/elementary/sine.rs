@@ -27,6 +27,12 @@ pub(super) fn cos(x: f64) -> Approximation {
     shifted(x, STEPS / 4)
 }
 
+/// The sine, or the cosine.
+#[inline(always)]
+pub(super) fn sin_or_cos(is_sine: bool, x: f64) -> Approximation {
+    shifted(x, if is_sine { 0 } else { STEPS / 4 })
+}
+
 /// sin(x + shift·π/128).
 ///
 /// With S and C the sine and cosine of the nearest step and r the rest, at most π/256 < 2⁻⁶·³: S·cos r + C·sin r. Errors, as

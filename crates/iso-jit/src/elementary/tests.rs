@@ -49,6 +49,23 @@ fn eight_values_are_those_of_eight_calls() {
     }
 }
 
+#[test]
+fn both_functions_of_four_are_those_of_eight_calls() {
+    let mut random = Random::new(3);
+    let [sin, cos] = [Operation::Sin, Operation::Cos].map(scalar);
+    for _ in 0..250_000 {
+        let arguments: [f64; WIDTH] = std::array::from_fn(|_| argument(&mut random));
+        let expected: [f64; WIDTH] =
+            std::array::from_fn(|lane| if lane < 4 { sin(arguments[lane]) } else { cos(arguments[lane - 4]) });
+        for version in x86::of_both() {
+            let mut values = arguments;
+            // SAFETY: this processor runs the version.
+            unsafe { version(&mut values) };
+            assert_eq!(values.map(bits), expected.map(bits), "{arguments:?}");
+        }
+    }
+}
+
 /// What is decided would be decided rightly with a quarter of the bounds too, so these are no close call; and most is decided.
 #[test]
 fn bounds_have_room_and_are_tight() {
