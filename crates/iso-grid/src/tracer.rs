@@ -62,8 +62,6 @@ pub struct Workspace {
     pub(crate) sloped_points: PointBatch,
     /// Boxes for the kernels, and their enclosures.
     pub(crate) boxes: BoxBatch,
-    /// Points of those boxes, as boxes of their own.
-    pub(crate) centers: BoxBatch,
     /// What lies ahead of a certified search.
     pub(crate) ahead: Vec<Ahead>,
     /// Which cells a certified search is to enter.

@@ -62,8 +62,13 @@ impl NativeBoxes {
 
     /// Whether the code was made for all of the boxes.
     fn takes(&self, boxes: Boxes<'_>) -> bool {
-        let mut sides = boxes.lo.iter().zip(&boxes.hi).flat_map(|(lo, hi)| lo.iter().zip(*hi));
-        sides.all(|(lo, hi)| Domain::holds(self.reach, *lo, *hi))
+        let mut are_taken = true;
+        for (lo, hi) in boxes.lo.iter().zip(&boxes.hi) {
+            for (lo, hi) in lo.iter().zip(*hi) {
+                are_taken &= Domain::holds(self.reach, *lo, *hi);
+            }
+        }
+        are_taken
     }
 }
 

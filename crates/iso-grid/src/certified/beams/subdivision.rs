@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec3;
+use iso_expr::Interval;
 
 use super::area::Area;
 use super::beam::{Beam, count_in};
@@ -13,12 +14,12 @@ use crate::certified::Certified;
 use crate::certified::cells::Cell;
 use crate::certified::classify::free_of_zero;
 use crate::certified::clip::Clip;
-use crate::certified::kernels::{Kernels, bounds_between};
+use crate::certified::kernels::{BATCH, Kernels, bounds_between};
 use crate::raster::Rays;
 use crate::{Kernel, Outcome, Region, Span, Tile, Workspace};
 
-/// Into how many stretches a beam is cut at most, and so how many boxes a kernel is given at once.
-const SLICES: usize = 8;
+/// Into how many stretches a beam is cut at most.
+const SLICES: usize = BATCH;
 
 /// A stretch is cut, and not the beam, when it is longer than this many times the beam's width; and then into stretches
 /// about so long.
@@ -67,6 +68,7 @@ struct Slab {
 
 impl Slab {
     /// `None` when it lies outside the region.
+    #[inline]
     fn new(
         (number, beam): (usize, &Beam),
         stretch: Span,
@@ -239,10 +241,10 @@ impl<'a> Subdivision<'a> {
         let mut slabs = std::mem::take(&mut self.memory.slabs);
         slabs.clear();
         for number in beams {
-            let beam = (number, &self.memory.beams[number]);
-            slabs.extend(slices(stretch, count).rev().filter_map(|stretch| {
-                Slab::new(beam, stretch, self.least_overlap, &self.certified.region)
-            }));
+            let beam = &self.memory.beams[number];
+            for stretch in slices(stretch, count).rev() {
+                slabs.extend(Slab::new((number, beam), stretch, self.least_overlap, &self.certified.region));
+            }
         }
         if self.certified.places.are_asked() {
             for slab in &mut slabs {
@@ -278,26 +280,38 @@ impl<'a> Subdivision<'a> {
             slabs = &mut slabs[..count];
         }
         self.enclose(slabs);
+        let (mut kept, mut gradients) = (0, [None; BATCH]);
+        for number in 0..slabs.len() {
+            let boxes = &self.workspace.boxes;
+            if !free_of_zero(boxes.interval(0, number)) {
+                slabs[kept] = slabs[number];
+                gradients[kept] = Gradient::new([0, 1, 2, 3].map(|output| boxes.decorated(output, number)));
+                kept += 1;
+            }
+        }
+        let slabs = &slabs[..kept];
+        self.enclose_middles(slabs);
         let mut behind = None;
         for (number, slab) in slabs.iter().enumerate() {
-            behind = self.keep(slab, number, behind);
+            let value = self.workspace.boxes.interval(0, number);
+            behind = self.keep(slab, value, gradients[number], behind);
         }
     }
 
-    /// Keeps a slab, the one of this number among those enclosed last, if it may hold roots, and joins it with the part behind it
-    /// if roots may lie on both sides of their border and their rays can be followed together.
+    /// Keeps a slab, in whose middle F is in `value`, if it may hold roots, and joins it with the part behind it if roots may lie on
+    /// both sides of their border and their rays can be followed together.
     ///
     /// The sums of vectors as near to the middle ones as the beam's origins are and of products of t with such directions form a
     /// convex set for any stretch of t; those of this stretch are in one box, those of the other in the other. So the mean value
     /// theorem holds with the gradients of both.
-    fn keep(&mut self, slab: &Slab, number: usize, behind: Option<Behind>) -> Option<Behind> {
-        let Workspace { boxes, centers, .. } = &*self.workspace;
-        if free_of_zero(boxes.interval(0, number)) {
-            return None;
-        }
+    fn keep(
+        &mut self,
+        slab: &Slab,
+        value: Interval,
+        gradient: Option<Gradient>,
+        behind: Option<Behind>,
+    ) -> Option<Behind> {
         let beam = &self.memory.beams[slab.beam];
-        let value = centers.interval(0, number);
-        let gradient = Gradient::new([0, 1, 2, 3].map(|output| boxes.decorated(output, number)));
         let form = gradient.as_ref().and_then(|gradient| {
             Form::new(beam, slab.reach, slab.middle, value, gradient)
         });
@@ -345,20 +359,28 @@ impl<'a> Subdivision<'a> {
         kept
     }
 
-    /// Encloses F and its derivatives over each slab, and F at its center.
+    /// Encloses F and its derivatives over each slab.
     fn enclose(&mut self, slabs: &[Slab]) {
         let Some(&Slab { kernels, .. }) = slabs.first() else { return };
         let kernels = &self.kernels[kernels];
-        let Workspace { boxes, centers, scratch, counters, .. } = &mut *self.workspace;
+        let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
         boxes.replace(slabs.iter().map(|slab| (&slab.lo, &slab.hi)));
-        centers.replace(slabs.iter().map(|slab| (&slab.middle.1, &slab.middle.1)));
         boxes.evaluate(kernels.gradients(), scratch, 4);
-        centers.evaluate(kernels.values(), scratch, 1);
-        let enclosed = 2 * slabs.len() as u64;
-        counters.box_evaluations += enclosed;
+        counters.box_evaluations += slabs.len() as u64;
         counters.operations += kernels.charge(Kernel::GradientEnclosures, slabs.len());
+        self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
+    }
+
+    /// Encloses F in the middle of each slab.
+    fn enclose_middles(&mut self, slabs: &[Slab]) {
+        let Some(&Slab { kernels, .. }) = slabs.first() else { return };
+        let kernels = &self.kernels[kernels];
+        let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
+        boxes.replace(slabs.iter().map(|slab| (&slab.middle.1, &slab.middle.1)));
+        boxes.evaluate(kernels.values(), scratch, 1);
+        counters.box_evaluations += slabs.len() as u64;
         counters.operations += kernels.charge(Kernel::ValueEnclosures, slabs.len());
-        self.work_left = self.work_left.saturating_sub(enclosed);
+        self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
     }
 
     /// Leaves a part to the search along single rays.
