@@ -183,6 +183,11 @@ impl Kernels {
         &**compiled(self.formula.surface().rounding_bounds())
     }
 
+    /// The corners of the box on which they hold.
+    pub(super) fn corners(&self) -> (DVec3, DVec3) {
+        (self.domain.map(|side| side.lo).into(), self.domain.map(|side| side.hi).into())
+    }
+
     /// Whether they hold on all of a box.
     pub(super) fn cover(&self, bounds: &Bounds) -> bool {
         self.domain.iter().zip(bounds).all(|(domain, side)| domain.lo <= side.lo && side.hi <= domain.hi)

@@ -27,6 +27,12 @@ const LARGEST_COUNTED: usize = 16;
 /// A larger beam is cut when more rays are likely to be followed in vain.
 const DOUBTFUL: usize = 16;
 
+/// How many times its size a box for which rounding is bounded grows at each side, so that it holds neighbours too.
+const AROUND: f64 = 2.0;
+
+/// Rounding so many times smaller than the tolerance does not matter.
+const SHARP: f64 = 64.0;
+
 /// Shorter kernels are made for a part when it has so many rays.
 const MANY: usize = 64;
 
@@ -59,6 +65,47 @@ struct Sight {
     blur: f64,
     /// How wide the enclosure of a root may be.
     tolerance: f64,
+}
+
+/// What rounding does to F on a box.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rounding {
+    /// The number of the kernels whose values are meant.
+    kernels: usize,
+    lo: DVec3,
+    hi: DVec3,
+    /// By how many [units](Program::ROUNDING_UNIT) a value at a point may be off.
+    of_values: f64,
+    /// What no derivative exceeds.
+    gradient: DVec3,
+}
+
+impl Rounding {
+    fn covers(&self, kernels: usize, lo: DVec3, hi: DVec3) -> bool {
+        self.kernels == kernels && self.lo.cmple(lo).all() && hi.cmple(self.hi).all()
+    }
+
+    /// How far F computed at a computed point of one of the beam's rays may be from F at the point itself.
+    fn error(&self, beam: &Beam, reach: Span) -> f64 {
+        let way = reach.end * beam.directions.size;
+        let points = self.gradient.dot(way + self.lo.abs().max(self.hi.abs()) + f64::MIN_POSITIVE);
+        (1.0 + ROUNDING) * Program::ROUNDING_UNIT * (self.of_values + points)
+    }
+}
+
+impl Sight {
+    /// `None` where nothing is known.
+    fn new(form: &Form, tolerance: f64, error: f64) -> Option<Self> {
+        let slope = form.slope;
+        let least = (1.0 - ROUNDING) * (slope.middle.abs() - slope.radius);
+        let blur = (1.0 + ROUNDING) * error / least;
+        (blur.is_finite() && least > 0.0).then(|| Self {
+            inverse: 1.0 / slope.middle,
+            unevenness: (1.0 + ROUNDING) * slope.radius / least,
+            blur,
+            tolerance: tolerance.max(2.0 * ROUNDINGS * blur),
+        })
+    }
 }
 
 /// What a value told of a pixel.
@@ -149,35 +196,50 @@ impl Subdivision<'_> {
 
     /// What values by kernels of this number say over a part. `None` when rounding is not bounded there.
     fn sight(&mut self, part: &Part, form: &Form, kernels: usize) -> Option<Sight> {
+        let tolerance = self.certified.accuracy * part.stretch.start.max(1.0).min(part.stretch.end);
+        let bounds = self.memory.beams[part.beam].bounds(form.reach, &self.certified.region)?;
+        let known = self.rounding_around(kernels, bounds);
+        let sight = |rounding: &Rounding, beam: &Beam| Sight::new(form, tolerance, rounding.error(beam, form.reach));
+        let rough = known.and_then(|known| sight(&known, &self.memory.beams[part.beam]));
+        // A bound on a larger box will do as long as it is nothing beside what is wanted.
+        if rough.as_ref().is_some_and(|sight| SHARP * sight.blur < tolerance) {
+            return rough;
+        }
+        let exact = self.rounding(kernels, bounds)?;
+        sight(&exact, &self.memory.beams[part.beam])
+    }
+
+    /// What rounding does to F on a box and around it, if that is bounded: neighbouring parts share it.
+    fn rounding_around(&mut self, kernels: usize, (lo, hi): (DVec3, DVec3)) -> Option<Rounding> {
+        if let Some(known) = self.memory.rounding.filter(|known| known.covers(kernels, lo, hi)) {
+            return Some(known);
+        }
+        let (region, room) = (&self.certified.region, AROUND * (hi - lo));
+        let (least, most) = self.kernels[kernels].corners();
+        let around = [(lo - room).max(region.min()).max(least), (hi + room).min(region.max()).min(most)];
+        let found = self.rounding(kernels, (around[0].min(lo), around[1].max(hi)));
+        self.memory.rounding = found.or(self.memory.rounding);
+        found
+    }
+
+    /// What rounding does to F on a box.
+    fn rounding(&mut self, kernels: usize, (lo, hi): (DVec3, DVec3)) -> Option<Rounding> {
         let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
-        let (beam, kernels) = (&self.memory.beams[part.beam], &self.kernels[kernels]);
-        let (lo, hi) = beam.bounds(form.reach, &self.certified.region)?;
+        let of_part = &self.kernels[kernels];
         let sides = outwards(lo, hi);
         let corners = [sides.map(|side| side.lo), sides.map(|side| side.hi)].map(DVec3::from_array);
         boxes.replace(std::iter::once((&corners[0], &corners[1])));
-        boxes.evaluate(kernels.rounding(), scratch, 5);
+        boxes.evaluate(of_part.rounding(), scratch, 5);
         counters.box_evaluations += 1;
-        counters.operations += kernels.charge(Kernel::RoundingBounds, 1);
+        counters.operations += of_part.charge(Kernel::RoundingBounds, 1);
         let decoration = |output| boxes.decorated(output, 0).decoration;
         let is_known = decoration(0) == Decoration::Common
             && (1..5).all(|output| decoration(output) >= Decoration::Defined);
         let magnitude = |output| boxes.interval(output, 0).magnitude();
         let gradient = DVec3::from_array([2, 3, 4].map(magnitude));
-        let way = form.reach.end * beam.directions.size;
-        let points = gradient.dot(way + lo.abs().max(hi.abs()) + f64::MIN_POSITIVE);
-        let error = (1.0 + ROUNDING) * Program::ROUNDING_UNIT * (magnitude(1) + points);
-
-        let slope = form.slope;
-        let least = (1.0 - ROUNDING) * (slope.middle.abs() - slope.radius);
-        let blur = (1.0 + ROUNDING) * error / least;
-        let tolerance = self.certified.accuracy * part.stretch.start.max(1.0).min(part.stretch.end);
-        let is_finite = blur.is_finite() && least > 0.0;
-        (is_known && is_finite).then(|| Sight {
-            inverse: 1.0 / slope.middle,
-            unevenness: (1.0 + ROUNDING) * slope.radius / least,
-            blur,
-            tolerance: tolerance.max(2.0 * ROUNDINGS * blur),
-        })
+        let found = Rounding { kernels, lo, hi, of_values: magnitude(1), gradient };
+        let is_bounded = is_known && found.of_values.is_finite() && gradient.is_finite();
+        is_bounded.then_some(found)
     }
 
     /// Puts the rays of a part that are still followed and may have a root there in front of `pixels`, and counts them. Those that

@@ -9,7 +9,7 @@ use iso_expr::Interval;
 use super::area::Area;
 use super::beam::{Beam, count_in};
 use super::form::{Form, Gradient};
-use super::pixels::Pixel;
+use super::pixels::{Pixel, Rounding};
 use crate::certified::Certified;
 use crate::certified::cells::Cell;
 use crate::certified::classify::free_of_zero;
@@ -122,6 +122,8 @@ pub(crate) struct Memory {
     pub(super) beams: Vec<Beam>,
     slabs: Vec<Slab>,
     pub(super) pixels: Vec<Pixel>,
+    /// What was found out last of rounding.
+    pub(super) rounding: Option<Rounding>,
 }
 
 /// The subdivision of a tile.
@@ -167,6 +169,7 @@ impl<'a> Subdivision<'a> {
         memory.ahead.clear();
         memory.beams.clear();
         memory.beams.push(beam);
+        memory.rounding = None;
         memory.open.clear();
         memory.open.resize(tile.len(), true);
         let kernels = vec![Arc::clone(&certified.kernels)];
