@@ -4,6 +4,7 @@
 //! about them tile by tile on all cores, [`Shading`] turns what was found into colours, and the resulting [`Picture`] writes
 //! itself to files: in the usual formats with the feature `images`, as OpenEXR with the feature `openexr`.
 
+mod bands;
 mod camera;
 mod clock;
 mod color;

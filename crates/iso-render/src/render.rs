@@ -9,6 +9,7 @@ use iso_grid::{Counters, Outcome, Ray, Surface, Tracer, Workspace, normals};
 use rayon::prelude::*;
 use thiserror::Error;
 
+use crate::bands::Band;
 use crate::clock::Stopwatch;
 use crate::color::srgb_from_color;
 use crate::{Camera, Layers, Pass, Picture, Plan, Shading, Size, Status, StatusCounts};
@@ -58,19 +59,24 @@ const TILE: u32 = 64;
 pub fn render(scene: &Scene<'_>, size: Size, progress: Progress<'_>) -> Result<Picture, RenderError> {
     let watch = Stopwatch::start();
     let layers = scene.plan.layers();
-    let picture = Picture::with_room(size, layers).ok_or(RenderError::OutOfMemory(size))?;
-    let finished = Mutex::new(Finished { picture, pixels: 0, trace: Duration::ZERO, shade: Duration::ZERO });
+    let mut picture = Picture::with_room(size, layers).ok_or(RenderError::OutOfMemory(size))?;
+    let bands = Band::all(&mut picture, TILE);
+    let work = Mutex::new(Work::default());
     tiles(size).into_par_iter().try_for_each_init(Tile::default, |tile, area| {
         if !tile.render(scene, size, area)? {
             return Ok(());
         }
-        let mut finished = finished.lock().expect("no thread panics while it holds the picture");
-        finished.take(tile);
-        progress(finished.pixels, size.pixels() as u64);
+        let band = &bands[(area.row / TILE) as usize];
+        tile.put(&mut band.lock().expect("no thread panics while it holds a band"), size);
+        let mut work = work.lock().expect("no thread panics while it holds the sums");
+        work.add(tile);
+        progress(work.pixels, size.pixels() as u64);
         Ok::<(), RenderError>(())
     })?;
-    let finished = finished.into_inner().expect("no thread panics while it holds the picture");
-    Ok(finished.share_out(watch.elapsed()))
+    drop(bands);
+    let work = work.into_inner().expect("no thread panics while it holds the sums");
+    work.note(&mut picture, watch.elapsed());
+    Ok(picture)
 }
 
 /// A rectangle of pixels.
@@ -169,6 +175,30 @@ impl Tile {
     }
 }
 
+impl Tile {
+    /// Copies the layers to their place in the band that holds the tile.
+    fn put(&self, band: &mut Band<'_>, size: Size) {
+        self.put_layer(&self.color, band.color, size);
+        self.put_layer(&self.depth, band.depth, size);
+        self.put_layer(&self.normals, band.normals, size);
+        self.put_layer(&self.points, band.points, size);
+        self.put_layer(&self.statuses, band.statuses, size);
+        self.put_layer(&self.outcomes, band.outcomes, size);
+    }
+
+    /// Copies one layer, if the picture keeps it.
+    fn put_layer<T: Copy>(&self, pixels: &[T], layer: &mut [T], size: Size) {
+        if layer.is_empty() {
+            return;
+        }
+        let (column, width) = (self.area.column as usize, self.area.width as usize);
+        let rows = layer.chunks_exact_mut(size.width() as usize);
+        for (pixels, row) in pixels.chunks_exact(width).zip(rows) {
+            row[column..][..width].copy_from_slice(pixels);
+        }
+    }
+}
+
 /// Where on its ray something was found; `None` where nothing was.
 fn found(outcome: &Outcome) -> Option<f64> {
     match outcome {
@@ -177,47 +207,33 @@ fn found(outcome: &Outcome) -> Option<f64> {
     }
 }
 
-/// Copies a tile's pixels to their place in a layer that the picture keeps.
-fn put<T: Copy>(pixels: &[T], area: Area, layer: &mut [T], size: Size) {
-    if layer.is_empty() {
-        return;
-    }
-    let width = area.width as usize;
-    for (row, pixels) in (area.row..).zip(pixels.chunks_exact(width)) {
-        layer[size.offset(area.column, row)..][..width].copy_from_slice(pixels);
-    }
-}
-
-/// What is finished so far.
-struct Finished {
-    picture: Picture,
+/// What tiles took, and what was found in them.
+#[derive(Default)]
+struct Work {
     pixels: u64,
+    counts: StatusCounts,
+    counters: Counters,
     trace: Duration,
     shade: Duration,
 }
 
-impl Finished {
-    fn take(&mut self, tile: &Tile) {
-        let picture = &mut self.picture;
-        put(&tile.color, tile.area, &mut picture.color, picture.size);
-        put(&tile.depth, tile.area, &mut picture.depth, picture.size);
-        put(&tile.normals, tile.area, &mut picture.normals, picture.size);
-        put(&tile.points, tile.area, &mut picture.points, picture.size);
-        put(&tile.statuses, tile.area, &mut picture.statuses, picture.size);
-        put(&tile.outcomes, tile.area, &mut picture.outcomes, picture.size);
-        picture.counts += tile.counts;
-        picture.counts.unfinished -= tile.outcomes.len() as u64;
-        picture.counters += tile.workspace.counters;
+impl Work {
+    fn add(&mut self, tile: &Tile) {
         self.pixels += tile.outcomes.len() as u64;
+        self.counts += tile.counts;
+        self.counters += tile.workspace.counters;
         self.trace += tile.trace;
         self.shade += tile.shade;
     }
 
-    fn share_out(mut self, wall: Duration) -> Picture {
+    /// Notes it with a picture that took `wall`.
+    fn note(self, picture: &mut Picture, wall: Duration) {
+        picture.counts = self.counts;
+        picture.counts.unfinished = picture.size.pixels() as u64 - self.pixels;
+        picture.counters = self.counters;
         let busy = (self.trace + self.shade).as_secs_f64();
         let share = if busy > 0.0 { wall.as_secs_f64() / busy } else { 0.0 };
-        self.picture.trace_seconds = share * self.trace.as_secs_f64();
-        self.picture.shade_seconds = share * self.shade.as_secs_f64();
-        self.picture
+        picture.trace_seconds = share * self.trace.as_secs_f64();
+        picture.shade_seconds = share * self.shade.as_secs_f64();
     }
 }

@@ -1,0 +1,50 @@
+//! A picture cut into bands of rows, so that threads write into it at once.
+
+use std::iter::repeat_with;
+use std::sync::Mutex;
+
+use glam::DVec3;
+use iso_grid::Outcome;
+
+use crate::{Picture, Status};
+
+/// Some rows of every layer of a picture; layers that the picture does not keep are empty.
+pub(crate) struct Band<'a> {
+    pub(crate) color: &'a mut [[u8; 3]],
+    pub(crate) depth: &'a mut [f64],
+    pub(crate) normals: &'a mut [DVec3],
+    pub(crate) points: &'a mut [DVec3],
+    pub(crate) statuses: &'a mut [Status],
+    pub(crate) outcomes: &'a mut [Outcome],
+}
+
+impl<'a> Band<'a> {
+    /// The bands of `rows` rows each, from top to bottom; the last one may have fewer.
+    pub(crate) fn all(picture: &'a mut Picture, rows: u32) -> Vec<Mutex<Self>> {
+        let pixels = rows as usize * picture.size.width() as usize;
+        let count = picture.size.height().div_ceil(rows);
+        let mut color = cut(&mut picture.color, pixels);
+        let mut depth = cut(&mut picture.depth, pixels);
+        let mut normals = cut(&mut picture.normals, pixels);
+        let mut points = cut(&mut picture.points, pixels);
+        let mut statuses = cut(&mut picture.statuses, pixels);
+        let mut outcomes = cut(&mut picture.outcomes, pixels);
+        let band = || {
+            Mutex::new(Self {
+                color: color(),
+                depth: depth(),
+                normals: normals(),
+                points: points(),
+                statuses: statuses(),
+                outcomes: outcomes(),
+            })
+        };
+        repeat_with(band).take(count as usize).collect()
+    }
+}
+
+/// Gives one part of so many pixels after the other, at last empty ones.
+fn cut<'a, T>(layer: &'a mut [T], pixels: usize) -> impl FnMut() -> &'a mut [T] {
+    let mut parts = layer.chunks_mut(pixels);
+    move || parts.next().unwrap_or_default()
+}
