@@ -16,7 +16,7 @@ pub(super) const BATCH: usize = 8;
 const INTERPRETING: u64 = 4;
 
 /// What formulas of no more operations come to in some places is compiled, if it is asked for often enough.
-const SMALL: u64 = 200;
+const SMALL: u64 = 1000;
 
 /// After so many operations, interpreted, a formula would better have been compiled at once.
 const OFTEN: u64 = 1 << 20;
