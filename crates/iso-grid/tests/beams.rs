@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use iso_expr::random::Random;
 use iso_expr::{Ast, Interpreter, Program};
-use iso_grid::{Certified, Hit, Outcome, Ray, Region, Span, Surface, Tracer, Workspace};
+use iso_grid::{Certified, Hit, Outcome, Raster, Ray, Region, Span, Surface, Tile, Tracer, Workspace};
 
 /// Formulas, half sides of their regions, and what they are tried for.
 const SCENES: [(&str, f64, &str); 20] = [
@@ -50,48 +50,81 @@ fn read(formula: &str) -> Program {
     Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0)
 }
 
-/// A picture's rays, and how many there are in a row.
-struct Tile {
+/// A picture's rays, how many there are in a row, and the raster that they come from, if any.
+struct View {
     name: &'static str,
     rays: Vec<Ray>,
     width: usize,
+    raster: Option<Raster>,
+}
+
+/// Where the first ray of a picture is in its raster.
+fn first(width: usize, height: usize) -> [f64; 2] {
+    [width, height].map(|length| 0.5 - 0.5 * length as f64)
 }
 
 /// Views of a region of half side `half` in `width` columns and `height` rows: parallel rays along an axis and slanted,
 /// and rays that spread from an eye outside and from one inside.
-fn tiles(half: f64, width: usize, height: usize) -> [Tile; 4] {
-    let tile = |name, ray: &dyn Fn(f64, f64) -> Ray| {
-        let offset = |at: usize, length: usize| 2.0 * (at as f64 + 0.5) / length as f64 - 1.0;
-        let places = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
-        let rays = places.map(|(column, row)| ray(offset(column, width), -offset(row, height))).collect();
-        Tile { name, rays, width }
-    };
+fn views(half: f64, width: usize, height: usize) -> [View; 4] {
     let (right, up) = (DVec3::new(0.8, 0.6, 0.0), DVec3::new(-0.24, 0.32, 0.916_515_138_991_168));
     let forward = up.cross(right);
-    [
-        tile("along an axis", &|a, b| Ray {
-            origin: half * DVec3::new(1.1 * a, -3.0, 1.1 * b),
-            direction: DVec3::Y,
-        }),
-        tile("slanted", &|a, b| Ray {
-            origin: half * (1.7 * (a * right + b * up) - 4.0 * forward),
-            direction: 0.7 * forward,
-        }),
-        tile("from outside", &|a, b| Ray {
-            origin: -5.0 * half * forward,
-            direction: (forward + 0.35 * (a * right + b * up)).normalize(),
-        }),
-        tile("from inside", &|a, b| Ray {
+    let (column, row) = (2.0 / width as f64, -2.0 / height as f64);
+    let of_raster = |name, raster: Raster| {
+        let rays = Tile::of(&raster, first(width, height), width, height).rays().collect();
+        View { name, rays, width, raster: Some(raster) }
+    };
+    let offset = |at: usize, length: usize| 2.0 * (at as f64 + 0.5) / length as f64 - 1.0;
+    let places = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
+    let inside = places.map(|(column, row)| {
+        let (a, b) = (offset(column, width), -offset(row, height));
+        Ray {
             origin: half * DVec3::new(0.05, -0.3, 0.21),
             direction: forward + 0.9 * (a * right + b * up),
-        }),
+        }
+    });
+    [
+        of_raster(
+            "along an axis",
+            Raster::Parallel {
+                middle: -3.0 * half * DVec3::Y,
+                right: 1.1 * half * column * DVec3::X,
+                down: 1.1 * half * row * DVec3::Z,
+                direction: DVec3::Y,
+            },
+        ),
+        of_raster(
+            "slanted",
+            Raster::Parallel {
+                middle: -4.0 * half * forward,
+                right: 1.7 * half * column * right,
+                down: 1.7 * half * row * up,
+                direction: 0.7 * forward,
+            },
+        ),
+        of_raster(
+            "from outside",
+            Raster::Spreading {
+                eye: -5.0 * half * forward,
+                forward,
+                right: 0.35 * column * right,
+                down: 0.35 * row * up,
+            },
+        ),
+        View { name: "from inside", rays: inside.collect(), width, raster: None },
     ]
 }
 
-fn together(tracer: &dyn Tracer, tile: &Tile) -> Vec<Outcome> {
-    let mut outcomes = vec![Outcome::Miss; tile.rays.len()];
-    tracer.trace_tile(&mut Workspace::default(), iso_grid::Tile::listed(&tile.rays, tile.width), &mut outcomes);
-    outcomes
+/// How the rays of a view end together: those of its raster, and the same ones listed.
+fn together(tracer: &dyn Tracer, view: &View) -> Vec<Vec<Outcome>> {
+    let (width, height) = (view.width, view.rays.len() / view.width);
+    let of_raster = view.raster.iter().map(|raster| Tile::of(raster, first(width, height), width, height));
+    let tiles = of_raster.chain([Tile::listed(&view.rays, width)]);
+    let trace = |tile| {
+        let mut outcomes = vec![Outcome::Miss; view.rays.len()];
+        tracer.trace_tile(&mut Workspace::default(), tile, &mut outcomes);
+        outcomes
+    };
+    tiles.map(trace).collect()
 }
 
 fn alone(tracer: &dyn Tracer, rays: &[Ray]) -> Vec<Outcome> {
@@ -138,12 +171,14 @@ fn every_ray_of_a_tile_ends_as_it_does_alone() {
     for (formula, half, what) in SCENES {
         let tracer = certified(&read(formula), half);
         // Sides that are no powers of two, so that beams are cut unevenly.
-        for tile in tiles(half, 45, 37) {
-            let alone = alone(&tracer, &tile.rays);
-            for (number, (a, b)) in together(&tracer, &tile).into_iter().zip(alone).enumerate() {
-                if !(is_same(a, b) && agree(a, b) && is_narrow(a)) {
-                    wrong
-                        .push(format!("{formula} ({what}), {}, ray {number}: {a:?}, alone {b:?}", tile.name));
+        for view in views(half, 45, 37) {
+            let alone = alone(&tracer, &view.rays);
+            for outcomes in together(&tracer, &view) {
+                for (number, (a, b)) in outcomes.into_iter().zip(&alone).enumerate() {
+                    if !(is_same(a, *b) && agree(a, *b) && is_narrow(a)) {
+                        let place = format!("{}, ray {number}", view.name);
+                        wrong.push(format!("{formula} ({what}), {place}: {a:?}, alone {b:?}"));
+                    }
                 }
             }
         }
@@ -158,11 +193,13 @@ fn no_tile_contradicts_its_rays_whatever_the_formula() {
     for number in 0..60 {
         let program = random.program(4 + number % 12);
         let tracer = certified(&program, 2.0);
-        for tile in tiles(2.0, 12, 9) {
-            let alone = alone(&tracer, &tile.rays);
-            for (a, b) in together(&tracer, &tile).into_iter().zip(alone) {
-                assert!(agree(a, b), "{program}\n{}: {a:?}, alone {b:?}", tile.name);
-                decided += usize::from(matches!((a, b), (Outcome::Hit(_), Outcome::Hit(_))));
+        for view in views(2.0, 12, 9) {
+            let alone = alone(&tracer, &view.rays);
+            for outcomes in together(&tracer, &view) {
+                for (a, b) in outcomes.into_iter().zip(&alone) {
+                    assert!(agree(a, *b), "{program}\n{}: {a:?}, alone {b:?}", view.name);
+                    decided += usize::from(matches!((a, b), (Outcome::Hit(_), Outcome::Hit(_))));
+                }
             }
         }
     }
@@ -177,15 +214,15 @@ fn unrelated_rays_may_be_called_a_tile() {
     let mut rays: Vec<Ray> = (0..96).map(|_| Ray { origin: vector(), direction: vector() }).collect();
     rays[17].direction = DVec3::ZERO;
     for width in [1, 8, 96] {
-        let outcomes = together(&tracer, &Tile { name: "unrelated", rays: rays.clone(), width });
-        for (a, b) in outcomes.into_iter().zip(alone(&tracer, &rays)) {
+        let view = View { name: "unrelated", rays: rays.clone(), width, raster: None };
+        for (a, b) in together(&tracer, &view).into_iter().flatten().zip(alone(&tracer, &rays)) {
             assert!(is_same(a, b) && agree(a, b), "{a:?}, alone {b:?}");
         }
     }
     for strange in [f64::NAN, f64::INFINITY, 1e200] {
         rays[21].origin.x = strange;
-        let outcomes = together(&tracer, &Tile { name: "strange", rays: rays.clone(), width: 8 });
-        assert_eq!(outcomes, alone(&tracer, &rays), "{strange}");
+        let view = View { name: "strange", rays: rays.clone(), width: 8, raster: None };
+        assert_eq!(together(&tracer, &view), [alone(&tracer, &rays)], "{strange}");
     }
 }
 
@@ -194,10 +231,10 @@ fn shortened_formulas_prove_what_whole_ones_do() {
     for (formula, half, name) in [SCENES[18], SCENES[19]] {
         let value = read(formula);
         let (shortened, whole) = (certified(&value, half), certified(&value, half).with_whole_formula());
-        for Tile { name: view, rays, width } in tiles(half, 48, 40) {
+        for View { name: view, rays, width, .. } in views(half, 48, 40) {
             let trace = |tracer: &Certified| {
                 let (mut workspace, mut outcomes) = (Workspace::default(), vec![Outcome::Miss; rays.len()]);
-                tracer.trace_tile(&mut workspace, iso_grid::Tile::listed(&rays, width), &mut outcomes);
+                tracer.trace_tile(&mut workspace, Tile::listed(&rays, width), &mut outcomes);
                 (outcomes, workspace.counters.operations)
             };
             let ((short, fewer), (long, more)) = (trace(&shortened), trace(&whole));
