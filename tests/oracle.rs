@@ -149,7 +149,8 @@ impl Comparison {
         let mut outcomes = vec![Outcome::Miss; rays.len()];
         trace(&tracer, &mut workspace, &rays, &mut outcomes);
         let mut found = vec![DVec3::NAN; rays.len()];
-        normals(&surface, &mut workspace, rays.as_slice().into(), &outcomes, &mut found).expect("the scenes compile");
+        normals(&surface, &mut workspace, rays.as_slice().into(), &outcomes, &mut found)
+            .expect("the scenes compile");
 
         let mut comparison = Self {
             name: scene.name.clone(),

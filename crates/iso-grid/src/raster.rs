@@ -104,9 +104,7 @@ impl<'a> Tile<'a> {
     #[inline]
     pub fn ray(&self, column: usize, row: usize) -> Ray {
         match self.rays {
-            Rays::Raster { raster, across, along } => {
-                raster.ray(across + column as f64, along + row as f64)
-            }
+            Rays::Raster { raster, across, along } => raster.ray(across + column as f64, along + row as f64),
             Rays::Listed(rays) => rays[row * self.width + column],
         }
     }

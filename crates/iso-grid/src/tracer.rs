@@ -62,6 +62,8 @@ pub struct Workspace {
     pub(crate) sloped_points: PointBatch,
     /// Boxes for the kernels, and their enclosures.
     pub(crate) boxes: BoxBatch,
+    /// Points in the middle of some of those boxes, as boxes of their own.
+    pub(crate) middles: BoxBatch,
     /// What lies ahead of a certified search.
     pub(crate) ahead: Vec<Ahead>,
     /// Which cells a certified search is to enter.

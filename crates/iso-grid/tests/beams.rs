@@ -77,10 +77,7 @@ fn views(half: f64, width: usize, height: usize) -> [View; 4] {
     let places = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
     let inside = places.map(|(column, row)| {
         let (a, b) = (offset(column, width), -offset(row, height));
-        Ray {
-            origin: half * DVec3::new(0.05, -0.3, 0.21),
-            direction: forward + 0.9 * (a * right + b * up),
-        }
+        Ray { origin: half * DVec3::new(0.05, -0.3, 0.21), direction: forward + 0.9 * (a * right + b * up) }
     });
     [
         of_raster(

@@ -8,12 +8,14 @@ use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{AbiParam, InstBuilder, MemFlagsData, Signature, Value, types};
 use cranelift_frontend::FunctionBuilder;
 use iso_expr::engine::{Boxes, Enclosures};
-use iso_expr::{BoxKernel, CompileError, Decorated, Decoration, Engine, Interpreter, Node, Operation, Program, Scratch};
+use iso_expr::{
+    BoxKernel, CompileError, Decorated, Decoration, Engine, Interpreter, Node, Operation, Program, Scratch,
+};
 
 use crate::code::{Blueprint, Compiled};
 use crate::domain::Domain;
-use crate::enclosures::{self, Enclosure};
 use crate::elementary;
+use crate::enclosures::{self, Enclosure};
 use crate::host::{self, Limits};
 use crate::lanes::{Lanes, Writer};
 use crate::symbols::Calls;
@@ -186,7 +188,8 @@ impl Round<'_, '_> {
                     let room = room.get_or_insert_with(|| Room::new(&mut self.writer));
                     let both = waves.entry(*operand).or_insert_with(|| {
                         let operand = &enclosures[operand.index()];
-                        room.call_for_both(&mut self.writer, calls, operand).expect("this machine has the function")
+                        room.call_for_both(&mut self.writer, calls, operand)
+                            .expect("this machine has the function")
                     });
                     Enclosure { range: *range, ..both[usize::from(*operation == Operation::Cos)] }
                 }

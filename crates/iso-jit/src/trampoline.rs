@@ -165,9 +165,8 @@ impl Room {
 
     /// Two elements, lane by lane, as they were written: the processor forwards no wider load from narrower stores.
     fn load(&self, writer: &mut Writer<'_, '_>, element: Type, offset: usize) -> Value {
-        let [low, high] = [0, size_of::<f64>()].map(|lane| {
-            writer.builder.ins().stack_load(types::I64, element, self.0, (offset + lane) as i32)
-        });
+        let [low, high] = [0, size_of::<f64>()]
+            .map(|lane| writer.builder.ins().stack_load(types::I64, element, self.0, (offset + lane) as i32));
         let pair = writer.builder.ins().scalar_to_vector(element.by(2).expect("a vector type"), low);
         writer.builder.ins().insertlane(pair, high, 1)
     }

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use iso_expr::{Engine, Interpreter};
-use iso_grid::{Certified, GridSettings, Method, Outcome, Ray, RootFinding, Surface, Tile, Tracer, Workspace};
+use iso_grid::{
+    Certified, GridSettings, Method, Outcome, Ray, RootFinding, Surface, Tile, Tracer, Workspace,
+};
 use iso_render::{Camera, Projection, Size, Status, StatusCounts, View};
 use serde::Serialize;
 

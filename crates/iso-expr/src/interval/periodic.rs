@@ -99,7 +99,8 @@ pub fn sine_and_cosine_by_ends(a: Decorated, sine: [f64; 2], cosine: [f64; 2]) -
         hi: if rises == [true, false] { 1.0 } else { lesser(1.0, round_up(greater(p, q))) },
     };
     let cosine_rises = sine_is_positive.map(|is_positive| !is_positive);
-    [turned(sine, cosine_is_positive), turned(cosine, cosine_rises)].map(|interval| Decorated { interval, ..a })
+    [turned(sine, cosine_is_positive), turned(cosine, cosine_rises)]
+        .map(|interval| Decorated { interval, ..a })
 }
 
 /// Undefined at its poles; anything where one is inside.

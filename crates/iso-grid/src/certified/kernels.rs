@@ -76,7 +76,8 @@ impl Formula {
         }
         // It does not matter if threads that come by at once forget each other's operations; one of them takes the last.
         let after = before.saturating_sub(operations);
-        let is_first = self.patience.compare_exchange(before, after, Ordering::Relaxed, Ordering::Relaxed).is_ok();
+        let is_first =
+            self.patience.compare_exchange(before, after, Ordering::Relaxed, Ordering::Relaxed).is_ok();
         if after == 0 && is_first {
             let surface = self.surface.compiled_for_many_runs();
             if Kernel::OF_PROOFS.iter().all(|kernel| surface.compile(*kernel).is_ok()) {
@@ -117,7 +118,11 @@ impl Kernels {
 
     /// The same for what a small formula comes to: in many places it is one of `formulas`, or becomes one, and is compiled when it
     /// is asked for often.
-    pub(super) fn shortened_to_one_of(&self, formulas: &Mutex<Vec<Arc<Formula>>>, domain: Bounds) -> Option<Self> {
+    pub(super) fn shortened_to_one_of(
+        &self,
+        formulas: &Mutex<Vec<Arc<Formula>>>,
+        domain: Bounds,
+    ) -> Option<Self> {
         let program = self.program().shortened(domain)?;
         // Formulas are only ever put in whole.
         let mut formulas = formulas.lock().unwrap_or_else(PoisonError::into_inner);

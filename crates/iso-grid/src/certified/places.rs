@@ -85,7 +85,9 @@ impl Places {
             return Arc::clone(&self.whole);
         }
         let found = self.at(self.around(lo, hi));
-        if found.cover(&bounds_between(lo, hi)) && (self.whole.are_small() || found.are_quicker_than(&self.whole)) {
+        if found.cover(&bounds_between(lo, hi))
+            && (self.whole.are_small() || found.are_quicker_than(&self.whole))
+        {
             found
         } else {
             Arc::clone(&self.whole)

@@ -122,7 +122,8 @@ fn torus_from_above() {
             let height = (tube * tube - (radius - ring).powi(2)).sqrt();
             assert!((the_hit(outcome).t - (5.0 - height) / 2.0).abs() < 1e-14);
             let mut found = [DVec3::ZERO];
-            normals(&surface, &mut Workspace::default(), [ray].as_slice().into(), &[outcome], &mut found).unwrap();
+            normals(&surface, &mut Workspace::default(), [ray].as_slice().into(), &[outcome], &mut found)
+                .unwrap();
             let side = (radius - ring) / tube;
             let expected = DVec3::new(side * angle.cos(), side * angle.sin(), height / tube);
             assert!(found[0].distance(expected) < 1e-12);

@@ -169,7 +169,14 @@ fn rays_that_are_no_rays_are_missed() {
 fn normal_along_x(value: Function, gradient: fn(DVec3) -> DVec3, outcome: Outcome) -> DVec3 {
     let ray = Ray { origin: DVec3::new(-2.0, 0.0, 0.0), direction: DVec3::X };
     let mut found = [DVec3::ZERO];
-    normals(&surface(value, gradient), &mut Workspace::default(), [ray].as_slice().into(), &[outcome], &mut found).unwrap();
+    normals(
+        &surface(value, gradient),
+        &mut Workspace::default(),
+        [ray].as_slice().into(),
+        &[outcome],
+        &mut found,
+    )
+    .unwrap();
     found[0]
 }
 

@@ -56,7 +56,9 @@ fn both_functions_of_four_are_those_of_eight_calls() {
     for _ in 0..250_000 {
         let arguments: [f64; WIDTH] = std::array::from_fn(|_| argument(&mut random));
         let expected: [f64; WIDTH] =
-            std::array::from_fn(|lane| if lane < 4 { sin(arguments[lane]) } else { cos(arguments[lane - 4]) });
+            std::array::from_fn(
+                |lane| if lane < 4 { sin(arguments[lane]) } else { cos(arguments[lane - 4]) },
+            );
         for version in x86::of_both() {
             let mut values = arguments;
             // SAFETY: this processor runs the version.

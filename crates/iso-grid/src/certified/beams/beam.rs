@@ -73,12 +73,12 @@ impl Beam {
         passage.end.is_finite().then_some(passage)
     }
 
-    /// How long a stretch of the beam from `span.start` to `span.end` is, and how wide, in units of space.
-    pub(super) fn extent(&self, span: Span) -> (f64, f64) {
-        let middle = 0.5 * (span.start + span.end);
-        let [column, row] = self.across(middle);
-        let width = 2.0 * (self.radii[0] * column.length()).max(self.radii[1] * row.length());
-        ((span.end - span.start) * self.directions.middle.length(), width)
+    /// How many times longer than the beam is wide a stretch of it is; infinite for a single ray.
+    pub(super) fn elongation(&self, span: Span) -> f64 {
+        let [column, row] = self.across(0.5 * (span.start + span.end));
+        let [across, along] = self.radii.map(|radius| 4.0 * radius * radius);
+        let width = (across * column.length_squared()).max(along * row.length_squared());
+        (span.end - span.start) * (self.directions.middle.length_squared() / width).sqrt()
     }
 
     /// How far a column and a row move the point at `t`.

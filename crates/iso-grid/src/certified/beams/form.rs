@@ -107,22 +107,20 @@ pub(super) struct Form {
     pub(super) slope: Ball,
     /// What no sum of columns, rows and the rest exceeds.
     across: f64,
-    /// The part of `across` that is not known from column and row.
-    vague: f64,
     /// The stretch on which it holds.
     pub(super) reach: Span,
 }
 
 impl Form {
     /// The form around `center`, near to where the middle of the beam is at `t`, where `value` encloses F. The point and the
-    /// stretch `reach` of the beam lie in a convex set on which `gradient` holds. `None` when it says nothing.
+    /// stretch `reach` of the beam lie in a convex set on which `gradient` holds.
     pub(super) fn new(
         beam: &Beam,
         reach: Span,
         (t, center): (f64, DVec3),
         value: Interval,
         gradient: &Gradient,
-    ) -> Option<Self> {
+    ) -> Self {
         let (o, d) = (&beam.origins, &beam.directions);
         let [column_radius, row_radius] = beam.radii;
         // From the center to the point at `t` on a ray: `shift` + a·column + b·row, and the rest.
@@ -141,12 +139,18 @@ impl Form {
             by_row,
             slope: gradient.along(d.middle).widened(gradient.magnitude_along(d.radius)),
             across: (1.0 + ROUNDING) * (known + vague),
-            vague: (1.0 + ROUNDING) * vague,
             reach,
         };
         let is_finite =
             [form.value.radius, form.slope.radius, form.across].iter().all(|radius| radius.is_finite());
-        is_finite.then_some(form)
+        if is_finite { form } else { Self::unknown(reach) }
+    }
+
+    /// A form that says nothing.
+    pub(super) fn unknown(reach: Span) -> Self {
+        let nothing = Ball { middle: 0.0, radius: f64::INFINITY };
+        let across = f64::INFINITY;
+        Self { t: 0.0, value: nothing, by_column: nothing, by_row: nothing, slope: nothing, across, reach }
     }
 
     /// How far the ends of the stretch are from `t`.
@@ -175,15 +179,22 @@ impl Form {
         Interval::point(self.t).minus(value.over(self.slope.interval()))
     }
 
-    /// About where the roots are, ray by ray.
-    pub(super) fn model(&self) -> Model {
+    /// About where the roots are on the rays of its beam.
+    pub(super) fn model(&self, beam: &Beam) -> Model {
         let slope = self.slope.middle;
         let [t, by_column, by_row] =
             [self.value, self.by_column, self.by_row].map(|ball| -ball.middle / slope);
         // From 0 = value + a·by_column + b·by_row + rest + (root − t)·slope for numbers of the balls.
-        let off = self.value.radius + self.vague + self.slope.radius * self.length();
+        let [across, along] = beam.radii;
+        let known = self.by_column.middle.abs() * across + self.by_row.middle.abs() * along;
+        let off = self.value.radius + (self.across - known) + self.slope.radius * self.length();
         let rounded = ROUNDING * (self.value.middle.abs() + self.across + self.t * slope.abs());
-        Model { t: self.t + t, by_column, by_row, uncertainty: (1.0 + ROUNDING) * (off + rounded) / slope.abs() }
+        Model {
+            t: self.t + t,
+            by_column,
+            by_row,
+            uncertainty: (1.0 + ROUNDING) * (off + rounded) / slope.abs(),
+        }
     }
 }
 

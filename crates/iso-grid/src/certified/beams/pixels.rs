@@ -71,7 +71,7 @@ struct Sight {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rounding {
     /// The number of the kernels whose values are meant.
-    kernels: usize,
+    kernels: u32,
     lo: DVec3,
     hi: DVec3,
     /// By how many [units](Program::ROUNDING_UNIT) a value at a point may be off.
@@ -81,7 +81,7 @@ pub(super) struct Rounding {
 }
 
 impl Rounding {
-    fn covers(&self, kernels: usize, lo: DVec3, hi: DVec3) -> bool {
+    fn covers(&self, kernels: u32, lo: DVec3, hi: DVec3) -> bool {
         self.kernels == kernels && self.lo.cmple(lo).all() && hi.cmple(self.hi).all()
     }
 
@@ -122,19 +122,20 @@ enum Verdict {
 
 impl Subdivision<'_> {
     /// Goes on with a stretch on which F is monotone along every ray.
-    pub(super) fn follow(&mut self, part: &Part, form: &Form) {
+    pub(super) fn follow(&mut self, part: &Part) {
+        let form = &part.form;
         let roots = form.roots();
         let stretch = part.stretch;
         let narrowed = Span { start: stretch.start.max(roots.lo), end: stretch.end.min(roots.hi) };
         if narrowed.start > narrowed.end {
             return;
         }
-        let part = &Part { stretch: narrowed, form: None, ..*part };
-        let area = self.memory.beams[part.beam].area;
-        let is_small = area.width.max(area.height) <= SMALL;
-        let model = form.model();
+        let part = &Part { stretch: narrowed, ..*part };
+        let beam = self.beam(part.beam);
+        let is_small = beam.area.width.max(beam.area.height) <= SMALL;
+        let model = form.model(beam);
         if form.is_even() && (is_small || self.most_hit(part, &model)) {
-            self.follow_each(part, form, &model);
+            self.follow_each(part, &model);
         } else if !is_small {
             self.divide_beam(part);
         } else if narrowed.end - narrowed.start < 0.5 * (stretch.end - stretch.start) {
@@ -146,7 +147,7 @@ impl Subdivision<'_> {
 
     /// Whether few rays of a part may have a root, but are likely to have none. Of large parts only the corners are asked.
     fn most_hit(&self, part: &Part, model: &Model) -> bool {
-        let Beam { area, radii: [across, along], .. } = self.memory.beams[part.beam];
+        let Beam { area, radii: [across, along], .. } = *self.beam(part.beam);
         let Span { start, end } = part.stretch;
         if area.width.max(area.height) > LARGEST_COUNTED {
             let corners = [(-across, -along), (across, -along), (-across, along), (across, along)];
@@ -166,11 +167,11 @@ impl Subdivision<'_> {
     }
 
     /// Ends or goes on with each ray of a part by its root there.
-    fn follow_each(&mut self, part: &Part, form: &Form, model: &Model) {
-        let kernels = self.kernels_for(part, form);
-        let Some(sight) = self.sight(part, form, kernels) else { return self.search_each(part) };
+    fn follow_each(&mut self, part: &Part, model: &Model) {
+        let kernels = self.kernels_for(part);
+        let Some(sight) = self.sight(part, kernels) else { return self.search_each(part) };
         let mut pixels = std::mem::take(&mut self.memory.pixels);
-        let mut count = self.start(part, form, model, &mut pixels);
+        let mut count = self.start(part, model, &mut pixels);
         for step in 1..=STEPS {
             if count == 0 {
                 break;
@@ -181,41 +182,44 @@ impl Subdivision<'_> {
     }
 
     /// The number of the kernels for the rays of a part: shorter ones made for this part alone, where so many rays may gain.
-    fn kernels_for(&mut self, part: &Part, form: &Form) -> usize {
-        let beam = &self.memory.beams[part.beam];
-        let kernels = &self.kernels[part.kernels];
+    fn kernels_for(&mut self, part: &Part) -> u32 {
+        let beam = self.beam(part.beam);
+        let kernels = self.kernels(part.kernels);
         let may_gain = kernels.may_be_shortened() && !kernels.are_small();
         if !may_gain || beam.area.width * beam.area.height < MANY {
             return part.kernels;
         }
-        let bounds = beam.bounds(form.reach, &self.certified.region).map(|(lo, hi)| outwards(lo, hi));
-        let Some(shortened) = bounds.and_then(|bounds| kernels.shortened(bounds)) else { return part.kernels };
-        self.kernels.push(Arc::new(shortened));
-        self.kernels.len() - 1
+        let bounds = beam.bounds(part.form.reach, &self.certified.region).map(|(lo, hi)| outwards(lo, hi));
+        let Some(shortened) = bounds.and_then(|bounds| kernels.shortened(bounds)) else {
+            return part.kernels;
+        };
+        self.number_of(Arc::new(shortened))
     }
 
     /// What values by kernels of this number say over a part. `None` when rounding is not bounded there.
-    fn sight(&mut self, part: &Part, form: &Form, kernels: usize) -> Option<Sight> {
+    fn sight(&mut self, part: &Part, kernels: u32) -> Option<Sight> {
+        let form = &part.form;
         let tolerance = self.certified.accuracy * part.stretch.start.max(1.0).min(part.stretch.end);
-        let bounds = self.memory.beams[part.beam].bounds(form.reach, &self.certified.region)?;
+        let bounds = self.beam(part.beam).bounds(form.reach, &self.certified.region)?;
         let known = self.rounding_around(kernels, bounds);
-        let sight = |rounding: &Rounding, beam: &Beam| Sight::new(form, tolerance, rounding.error(beam, form.reach));
-        let rough = known.and_then(|known| sight(&known, &self.memory.beams[part.beam]));
+        let sight =
+            |rounding: &Rounding, beam: &Beam| Sight::new(form, tolerance, rounding.error(beam, form.reach));
+        let rough = known.and_then(|known| sight(&known, self.beam(part.beam)));
         // A bound on a larger box will do as long as it is nothing beside what is wanted.
         if rough.as_ref().is_some_and(|sight| SHARP * sight.blur < tolerance) {
             return rough;
         }
         let exact = self.rounding(kernels, bounds)?;
-        sight(&exact, &self.memory.beams[part.beam])
+        sight(&exact, self.beam(part.beam))
     }
 
     /// What rounding does to F on a box and around it, if that is bounded: neighbouring parts share it.
-    fn rounding_around(&mut self, kernels: usize, (lo, hi): (DVec3, DVec3)) -> Option<Rounding> {
+    fn rounding_around(&mut self, kernels: u32, (lo, hi): (DVec3, DVec3)) -> Option<Rounding> {
         if let Some(known) = self.memory.rounding.filter(|known| known.covers(kernels, lo, hi)) {
             return Some(known);
         }
         let (region, room) = (&self.certified.region, AROUND * (hi - lo));
-        let (least, most) = self.kernels[kernels].corners();
+        let (least, most) = self.kernels(kernels).corners();
         let around = [(lo - room).max(region.min()).max(least), (hi + room).min(region.max()).min(most)];
         let found = self.rounding(kernels, (around[0].min(lo), around[1].max(hi)));
         self.memory.rounding = found.or(self.memory.rounding);
@@ -223,9 +227,9 @@ impl Subdivision<'_> {
     }
 
     /// What rounding does to F on a box.
-    fn rounding(&mut self, kernels: usize, (lo, hi): (DVec3, DVec3)) -> Option<Rounding> {
+    fn rounding(&mut self, kernels: u32, (lo, hi): (DVec3, DVec3)) -> Option<Rounding> {
         let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
-        let of_part = &self.kernels[kernels];
+        let of_part = &self.kernels[kernels as usize];
         let sides = outwards(lo, hi);
         let corners = [sides.map(|side| side.lo), sides.map(|side| side.hi)].map(DVec3::from_array);
         boxes.replace(std::iter::once((&corners[0], &corners[1])));
@@ -244,8 +248,8 @@ impl Subdivision<'_> {
 
     /// Puts the rays of a part that are still followed and may have a root there in front of `pixels`, and counts them. Those that
     /// may have one so near to a face of the region that no point inside is known are searched each for its own.
-    fn start(&mut self, part: &Part, form: &Form, model: &Model, pixels: &mut Vec<Pixel>) -> usize {
-        let Beam { area, radii: [across, along], .. } = self.memory.beams[part.beam];
+    fn start(&mut self, part: &Part, model: &Model, pixels: &mut Vec<Pixel>) -> usize {
+        let Beam { area, radii: [across, along], .. } = *self.beam(part.beam);
         let room = area.width * area.height;
         if pixels.len() < room {
             pixels.resize(room, Pixel::default());
@@ -262,7 +266,7 @@ impl Subdivision<'_> {
                 }
                 let pixel = &mut pixels[count];
                 pixel.ray = self.tile.ray(column, row);
-                (pixel.wanted, pixel.reach) = (part.stretch, form.reach);
+                (pixel.wanted, pixel.reach) = (part.stretch, part.form.reach);
                 if !part.is_inside {
                     let clip = Clip::new(&self.certified.region, &pixel.ray);
                     let Some(Clip { outer, inner }) = clip else { continue };
@@ -288,9 +292,9 @@ impl Subdivision<'_> {
 
     /// Takes F at each pixel's t, and counts the pixels that are nearer to their roots by that, which are then in front. The last
     /// time, those are searched each for its own.
-    fn approach(&mut self, pixels: &mut [Pixel], kernels: usize, sight: &Sight, is_last: bool) -> usize {
+    fn approach(&mut self, pixels: &mut [Pixel], kernels: u32, sight: &Sight, is_last: bool) -> usize {
         let Workspace { points, scratch, counters, .. } = &mut *self.workspace;
-        let of_part = &self.kernels[kernels];
+        let of_part = &self.kernels[kernels as usize];
         points.replace(pixels.iter().map(|pixel| (&pixel.ray, pixel.t)));
         counters.trace_evaluations += pixels.len() as u64;
         counters.operations += of_part.charge(Kernel::Values, pixels.len());

@@ -78,8 +78,7 @@ impl Spread {
                     deviation = deviation.max((vector(tile.ray(column, row)) - fitted).abs());
                 }
             }
-            let magnitude =
-                middle.abs() + radii[0] * by_column.abs() + radii[1] * by_row.abs() + deviation;
+            let magnitude = middle.abs() + radii[0] * by_column.abs() + radii[1] * by_row.abs() + deviation;
             Self::new([middle, by_column, by_row], deviation + ROUNDINGS * magnitude, radii)
         })
     }
@@ -143,7 +142,12 @@ mod tests {
             let listed: Vec<_> = tile.rays().collect();
             for tile in [tile, Tile::listed(&listed, 40)] {
                 let side = 1 + random.below(24);
-                let area = Area { column: random.below(16), row: random.below(9), width: side, height: 1 + side / 2 };
+                let area = Area {
+                    column: random.below(16),
+                    row: random.below(9),
+                    width: side,
+                    height: 1 + side / 2,
+                };
                 let spreads = Spread::of(&tile, area);
                 for row in area.rows() {
                     for column in area.columns() {

@@ -40,20 +40,22 @@ const WORK_LIMIT: u64 = 64;
 #[derive(Debug)]
 pub(super) struct Part {
     /// The beam's number.
-    pub(super) beam: usize,
+    pub(super) beam: u32,
+    /// The number of kernels that hold on it.
+    pub(super) kernels: u32,
     pub(super) stretch: Span,
-    pub(super) form: Option<Form>,
+    pub(super) form: Form,
     /// Whether all of it lies in the region, and a little more at both ends too.
     pub(super) is_inside: bool,
-    /// The number of kernels that hold on it.
-    pub(super) kernels: usize,
 }
 
 /// A stretch of a beam, and a box around its part in the region.
 #[derive(Clone, Copy, Debug)]
 struct Slab {
     /// The beam's number.
-    beam: usize,
+    beam: u32,
+    /// The number of kernels that hold on the box.
+    kernels: u32,
     stretch: Span,
     /// The stretch and a little more at both ends.
     reach: Span,
@@ -62,19 +64,12 @@ struct Slab {
     /// The middle of `reach`, and a point of the box that is in the middle of the beam there where that is in the region.
     middle: (f64, DVec3),
     is_inside: bool,
-    /// The number of kernels that hold on the box.
-    kernels: usize,
 }
 
 impl Slab {
     /// `None` when it lies outside the region.
     #[inline]
-    fn new(
-        (number, beam): (usize, &Beam),
-        stretch: Span,
-        least_overlap: f64,
-        region: &Region,
-    ) -> Option<Self> {
+    fn new((number, beam): (u32, &Beam), stretch: Span, least_overlap: f64, region: &Region) -> Option<Self> {
         let overlap = (OVERLAP * (stretch.end - stretch.start)).max(least_overlap);
         let reach = Span { start: (stretch.start - overlap).max(0.0), end: stretch.end + overlap };
         let (lo_in_space, hi_in_space) = beam.bounds_in_space(reach);
@@ -83,13 +78,13 @@ impl Slab {
         let middle = beam.origins.middle + t * beam.directions.middle;
         lo.cmple(hi).all().then(|| Self {
             beam: number,
+            kernels: 0,
             stretch,
             reach,
             lo,
             hi,
             middle: (t, middle.clamp(lo, hi)),
             is_inside: lo == lo_in_space && hi == hi_in_space,
-            kernels: 0,
         })
     }
 }
@@ -150,9 +145,7 @@ impl<'a> Subdivision<'a> {
     ) -> Option<Self> {
         let is_finite = match tile.rays {
             Rays::Raster { .. } => true,
-            Rays::Listed(rays) => {
-                rays.iter().all(|ray| ray.origin.is_finite() && ray.direction.is_finite())
-            }
+            Rays::Listed(rays) => rays.iter().all(|ray| ray.origin.is_finite() && ray.direction.is_finite()),
         };
         if tile.is_empty() || !is_finite {
             return None;
@@ -181,19 +174,22 @@ impl<'a> Subdivision<'a> {
     pub(in crate::certified) fn run(mut self) {
         if let Some(stretch) = self.passage() {
             self.least_overlap = LEAST_OVERLAP * stretch.end;
-            self.memory.ahead.push(Part { beam: 0, stretch, form: None, is_inside: false, kernels: 0 });
+            let form = Form::unknown(stretch);
+            self.memory.ahead.push(Part { beam: 0, kernels: 0, stretch, form, is_inside: false });
         }
         while let Some(part) = self.memory.ahead.pop() {
             if self.certified.stop.is_requested() {
                 break;
             }
-            if !self.is_open(self.memory.beams[part.beam].area) {
+            if !self.is_open(self.beam(part.beam).area) {
                 continue;
             }
-            match &part.form {
-                _ if self.work_left == 0 => self.search_each(&part),
-                Some(form) if form.is_monotone() => self.follow(&part, form),
-                _ => self.divide(&part),
+            if self.work_left == 0 {
+                self.search_each(&part);
+            } else if part.form.is_monotone() {
+                self.follow(&part);
+            } else {
+                self.divide(&part);
             }
         }
         self.workspace.tile = self.memory;
@@ -209,6 +205,16 @@ impl<'a> Subdivision<'a> {
         spans.reduce(|a, b| Span { start: a.start.min(b.start), end: a.end.max(b.end) })
     }
 
+    /// The beam of a number.
+    pub(super) fn beam(&self, number: u32) -> &Beam {
+        &self.memory.beams[number as usize]
+    }
+
+    /// The kernels of a number.
+    pub(super) fn kernels(&self, number: u32) -> &Arc<Kernels> {
+        &self.kernels[number as usize]
+    }
+
     /// Whether some ray of `area` is still followed.
     fn is_open(&self, area: Area) -> bool {
         area.rows().any(|row| self.memory.open[row * self.tile.width()..][area.columns()].contains(&true))
@@ -216,11 +222,11 @@ impl<'a> Subdivision<'a> {
 
     /// Cuts a stretch when it is longer than the beam is wide, or else the beam.
     pub(super) fn divide(&mut self, part: &Part) {
-        let beam = &self.memory.beams[part.beam];
-        let (length, width) = beam.extent(part.stretch);
+        let beam = self.beam(part.beam);
+        let elongation = beam.elongation(part.stretch);
         let is_smallest = beam.area.width.max(beam.area.height) <= SMALLEST;
-        if length > LONG * width && width > 0.0 {
-            let count = (length / (LONG * width)).ceil().min(SLICES as f64) as usize;
+        if elongation > LONG && elongation.is_finite() {
+            let count = (elongation / LONG).ceil().min(SLICES as f64) as usize;
             self.examine(part.beam..part.beam + 1, (part.stretch, count), part.kernels);
         } else if !is_smallest {
             self.divide_beam(part);
@@ -231,20 +237,19 @@ impl<'a> Subdivision<'a> {
 
     /// Cuts a beam.
     pub(super) fn divide_beam(&mut self, Part { beam, stretch, kernels, .. }: &Part) {
-        let beams = &mut self.memory.beams;
-        let first = beams.len();
-        let area = beams[*beam].area;
-        beams.extend(area.quarters().map(|quarter| Beam::new(&self.tile, quarter)));
-        self.examine(first..self.memory.beams.len(), (*stretch, 1), *kernels);
+        let first = self.memory.beams.len() as u32;
+        let area = self.beam(*beam).area;
+        self.memory.beams.extend(area.quarters().map(|quarter| Beam::new(&self.tile, quarter)));
+        self.examine(first..self.memory.beams.len() as u32, (*stretch, 1), *kernels);
     }
 
     /// Looks at a stretch of all beams, cut into `count`, and keeps the stretches that may hold roots. Kernels of the number
     /// `kernels` may hold there.
-    pub(super) fn examine(&mut self, beams: Range<usize>, (stretch, count): (Span, usize), kernels: usize) {
+    pub(super) fn examine(&mut self, beams: Range<u32>, (stretch, count): (Span, usize), kernels: u32) {
         let mut slabs = std::mem::take(&mut self.memory.slabs);
         slabs.clear();
         for number in beams {
-            let beam = &self.memory.beams[number];
+            let beam = self.beam(number);
             for stretch in slices(stretch, count).rev() {
                 slabs.extend(Slab::new((number, beam), stretch, self.least_overlap, &self.certified.region));
             }
@@ -261,48 +266,50 @@ impl<'a> Subdivision<'a> {
     }
 
     /// The number of kernels that hold on a box: those `around` it, if it decides nothing more there.
-    fn kernels_on(&mut self, lo: DVec3, hi: DVec3, around: usize) -> usize {
-        let kernels = &self.kernels[around];
+    fn kernels_on(&mut self, lo: DVec3, hi: DVec3, around: u32) -> u32 {
+        let kernels = self.kernels(around);
         if !kernels.may_be_shortened() && kernels.cover(&bounds_between(lo, hi)) {
             return around;
         }
         let found = self.certified.places.kernels(lo, hi);
-        let known = [0, around, self.kernels.len() - 1];
-        known.into_iter().find(|number| Arc::ptr_eq(&self.kernels[*number], &found)).unwrap_or_else(|| {
-            self.kernels.push(found);
-            self.kernels.len() - 1
-        })
+        let known = [0, around, self.kernels.len() as u32 - 1];
+        let known = known.into_iter().find(|number| Arc::ptr_eq(self.kernels(*number), &found));
+        known.unwrap_or_else(|| self.number_of(found))
+    }
+
+    /// Gives kernels a number.
+    pub(super) fn number_of(&mut self, kernels: Arc<Kernels>) -> u32 {
+        self.kernels.push(kernels);
+        self.kernels.len() as u32 - 1
     }
 
     /// Encloses F over slabs that lie where the same kernels hold, and keeps those that may hold roots.
     fn keep_open(&mut self, mut slabs: &mut [Slab]) {
         let Some(&Slab { kernels, .. }) = slabs.first() else { return };
-        if self.kernels[kernels].may_be_shortened() {
+        if self.kernels(kernels).may_be_shortened() {
             // The gradient of a formula with branches takes much longer than its values, which often say enough.
             let count = self.drop_free(slabs);
             slabs = &mut slabs[..count];
         }
         self.enclose(slabs);
-        let (mut kept, mut gradients) = (0, [None; BATCH]);
+        let (mut open, mut count) = ([0; BATCH], 0);
         for number in 0..slabs.len() {
-            let boxes = &self.workspace.boxes;
-            if !free_of_zero(boxes.interval(0, number)) {
-                slabs[kept] = slabs[number];
-                gradients[kept] = Gradient::new([0, 1, 2, 3].map(|output| boxes.decorated(output, number)));
-                kept += 1;
+            if !free_of_zero(self.workspace.boxes.interval(0, number)) {
+                open[count] = number;
+                count += 1;
             }
         }
-        let slabs = &slabs[..kept];
-        self.enclose_middles(slabs);
+        let open = &open[..count];
+        self.enclose_middles(slabs, open);
         let mut behind = None;
-        for (number, slab) in slabs.iter().enumerate() {
-            let value = self.workspace.boxes.interval(0, number);
-            behind = self.keep(slab, value, gradients[number], behind);
+        for (place, number) in open.iter().enumerate() {
+            let value = self.workspace.middles.interval(0, place);
+            behind = self.keep(&slabs[*number], *number, value, behind);
         }
     }
 
-    /// Keeps a slab, in whose middle F is in `value`, if it may hold roots, and joins it with the part behind it if roots may lie on
-    /// both sides of their border and their rays can be followed together.
+    /// Keeps a slab, the one of this number among those enclosed last, in whose middle F is in `value`, if it may hold roots, and
+    /// joins it with the part behind it if roots may lie on both sides of their border and their rays can be followed together.
     ///
     /// The sums of vectors as near to the middle ones as the beam's origins are and of products of t with such directions form a
     /// convex set for any stretch of t; those of this stretch are in one box, those of the other in the other. So the mean value
@@ -310,43 +317,47 @@ impl<'a> Subdivision<'a> {
     fn keep(
         &mut self,
         slab: &Slab,
+        number: usize,
         value: Interval,
-        gradient: Option<Gradient>,
         behind: Option<Behind>,
     ) -> Option<Behind> {
-        let beam = &self.memory.beams[slab.beam];
-        let form = gradient.as_ref().and_then(|gradient| {
-            Form::new(beam, slab.reach, slab.middle, value, gradient)
-        });
-        if form.as_ref().is_some_and(Form::excludes_zero) {
+        let boxes = &self.workspace.boxes;
+        let Slab { beam, kernels, stretch, reach, is_inside, .. } = *slab;
+        let Some(gradient) = Gradient::new([0, 1, 2, 3].map(|output| boxes.decorated(output, number))) else {
+            let form = Form::unknown(reach);
+            self.memory.ahead.push(Part { beam, kernels, stretch, form, is_inside });
+            return None;
+        };
+        let rays = &self.memory.beams[beam as usize];
+        let form = Form::new(rays, reach, slab.middle, value, &gradient);
+        if form.excludes_zero() {
             return None;
         }
-        let is_monotone = slab.is_inside && form.as_ref().is_some_and(Form::is_monotone);
-        if let (true, Some(form), Some(gradient), Some(behind)) = (is_monotone, &form, &gradient, &behind)
+        let is_monotone = is_inside && form.is_monotone();
+        if let (true, Some(behind)) = (is_monotone, behind)
             && let Some(far) = self.memory.ahead.last_mut()
-            && far.beam == slab.beam
-            && far.stretch.start == slab.stretch.end
-            && form.roots().hi >= slab.stretch.end
-            && far.form.as_ref().is_some_and(|far| far.roots().lo <= slab.stretch.end)
+            && far.beam == beam
+            && far.stretch.start == stretch.end
+            && form.roots().hi >= stretch.end
+            && far.form.roots().lo <= stretch.end
         {
             let gradient = gradient.hull(&behind.gradient);
-            let reach = Span { start: slab.reach.start, end: behind.reach.end };
-            let joined = Form::new(beam, reach, slab.middle, value, &gradient);
-            if joined.as_ref().is_some_and(Form::is_even) {
-                far.stretch.start = slab.stretch.start;
+            let reach = Span { start: reach.start, end: behind.reach.end };
+            let joined = Form::new(rays, reach, slab.middle, value, &gradient);
+            if joined.is_even() {
+                far.stretch.start = stretch.start;
                 far.form = joined;
                 return Some(Behind { gradient, reach });
             }
         }
-        let Slab { beam, stretch, reach, is_inside, kernels, .. } = *slab;
-        self.memory.ahead.push(Part { beam, stretch, form, is_inside, kernels });
-        gradient.filter(|_| is_monotone).map(|gradient| Behind { gradient, reach })
+        self.memory.ahead.push(Part { beam, kernels, stretch, form, is_inside });
+        is_monotone.then_some(Behind { gradient, reach })
     }
 
     /// Moves the slabs over which the enclosure of F does not exclude zero to the front, and counts them.
     fn drop_free(&mut self, slabs: &mut [Slab]) -> usize {
         let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
-        let kernels = &self.kernels[slabs[0].kernels];
+        let kernels = &self.kernels[slabs[0].kernels as usize];
         boxes.replace(slabs.iter().map(|slab| (&slab.lo, &slab.hi)));
         boxes.evaluate(kernels.values(), scratch, 1);
         counters.box_evaluations += slabs.len() as u64;
@@ -365,7 +376,7 @@ impl<'a> Subdivision<'a> {
     /// Encloses F and its derivatives over each slab.
     fn enclose(&mut self, slabs: &[Slab]) {
         let Some(&Slab { kernels, .. }) = slabs.first() else { return };
-        let kernels = &self.kernels[kernels];
+        let kernels = &self.kernels[kernels as usize];
         let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
         boxes.replace(slabs.iter().map(|slab| (&slab.lo, &slab.hi)));
         boxes.evaluate(kernels.gradients(), scratch, 4);
@@ -374,21 +385,21 @@ impl<'a> Subdivision<'a> {
         self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
     }
 
-    /// Encloses F in the middle of each slab.
-    fn enclose_middles(&mut self, slabs: &[Slab]) {
-        let Some(&Slab { kernels, .. }) = slabs.first() else { return };
-        let kernels = &self.kernels[kernels];
-        let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
-        boxes.replace(slabs.iter().map(|slab| (&slab.middle.1, &slab.middle.1)));
-        boxes.evaluate(kernels.values(), scratch, 1);
-        counters.box_evaluations += slabs.len() as u64;
-        counters.operations += kernels.charge(Kernel::ValueEnclosures, slabs.len());
-        self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
+    /// Encloses F in the middle of each of the slabs that are open.
+    fn enclose_middles(&mut self, slabs: &[Slab], open: &[usize]) {
+        let Some(&first) = open.first() else { return };
+        let kernels = &self.kernels[slabs[first].kernels as usize];
+        let Workspace { middles, scratch, counters, .. } = &mut *self.workspace;
+        middles.replace(open.iter().map(|number| (&slabs[*number].middle.1, &slabs[*number].middle.1)));
+        middles.evaluate(kernels.values(), scratch, 1);
+        counters.box_evaluations += open.len() as u64;
+        counters.operations += kernels.charge(Kernel::ValueEnclosures, open.len());
+        self.work_left = self.work_left.saturating_sub(open.len() as u64);
     }
 
     /// Leaves a part to the search along single rays.
     pub(super) fn search_each(&mut self, part: &Part) {
-        let area = self.memory.beams[part.beam].area;
+        let area = self.beam(part.beam).area;
         for row in area.rows() {
             for column in area.columns() {
                 if self.memory.open[row * self.tile.width() + column] {
@@ -399,7 +410,7 @@ impl<'a> Subdivision<'a> {
     }
 
     /// Searches a stretch of the ray in a column and a row, where the kernels of this number hold.
-    pub(super) fn search_one(&mut self, (column, row): (usize, usize), stretch: Span, kernels: usize) {
+    pub(super) fn search_one(&mut self, (column, row): (usize, usize), stretch: Span, kernels: u32) {
         let ray = self.tile.ray(column, row);
         let Some(clip) = Clip::new(&self.certified.region, &ray) else { return };
         let outer = clip.outer;
@@ -407,7 +418,7 @@ impl<'a> Subdivision<'a> {
         if stretch.start > stretch.end {
             return;
         }
-        let local = &self.kernels[kernels];
+        let local = &self.kernels[kernels as usize];
         let outcome = self.certified.search(self.workspace, ray, clip, (Cell::SMALLEST, stretch), local);
         if outcome != Outcome::Miss {
             self.end(row * self.tile.width() + column, outcome);
