@@ -303,13 +303,13 @@ mod tests {
 
     /// Where a point appears in the picture, in pixels from its upper left corner.
     fn project(camera: &Camera, point: DVec3) -> [f64; 2] {
-        let (eye, depth) = match camera.projection {
-            Rays::Spreading(eye) => (eye, (point - eye).dot(camera.forward)),
-            Rays::Parallel(middle) => (middle, 1.0),
+        let (eye, right, down, depth) = match camera.raster {
+            Raster::Spreading { eye, forward, right, down } => (eye, right, down, (point - eye).dot(forward)),
+            Raster::Parallel { middle, right, down, .. } => (middle, right, down, 1.0),
         };
         let offset = (point - eye) / depth;
         let along = |axis: DVec3, middle: f64| middle + offset.dot(axis) / axis.length_squared();
-        [along(camera.right, camera.middle[0]), along(camera.down, camera.middle[1])]
+        [along(right, camera.middle[0]), along(down, camera.middle[1])]
     }
 
     #[test]

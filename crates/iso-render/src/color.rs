@@ -14,7 +14,16 @@ pub fn color_from_srgb(bytes: [u8; 3]) -> Color {
 
 /// The nearest three sRGB bytes; what is brighter than 1 becomes 1.
 pub fn srgb_from_color(color: Color) -> [u8; 3] {
-    color.to_array().map(|component| BORDERS.partition_point(|&border| border <= component) as u8)
+    let borders = &*BORDERS;
+    color.to_array().map(|component| {
+        // NaN and what is negative count as no light.
+        let part = (component * PARTS as f64) as usize;
+        let mut byte = borders.passed.get(part).copied().unwrap_or(u8::MAX);
+        while byte < u8::MAX && borders.ends[usize::from(byte)] <= component {
+            byte += 1;
+        }
+        byte
+    })
 }
 
 /// Linear light of an sRGB component from 0 to 255.
@@ -26,9 +35,25 @@ fn linear(component: f64) -> f64 {
 /// The linear light of each byte.
 static BYTES: LazyLock<[f64; 256]> = LazyLock::new(|| std::array::from_fn(|byte| linear(byte as f64)));
 
-/// The linear light at which each byte gives way to the next.
-static BORDERS: LazyLock<[f64; 255]> =
-    LazyLock::new(|| std::array::from_fn(|byte| linear(byte as f64 + 0.5)));
+/// Into how many equal parts linear light is cut to find its byte in.
+const PARTS: usize = 4096;
+
+/// Where bytes end.
+struct Borders {
+    /// The linear light at which each byte gives way to the next.
+    ends: [f64; 255],
+    /// How many of those lie before each part: the byte at which it begins.
+    passed: [u8; PARTS],
+}
+
+static BORDERS: LazyLock<Borders> = LazyLock::new(|| {
+    let ends: [f64; 255] = std::array::from_fn(|byte| linear(byte as f64 + 0.5));
+    let passed = std::array::from_fn(|part| {
+        let start = part as f64 / PARTS as f64;
+        ends.partition_point(|end| *end <= start) as u8
+    });
+    Borders { ends, passed }
+});
 
 #[cfg(test)]
 mod tests {
@@ -38,6 +63,16 @@ mod tests {
     fn bytes_survive_the_way_to_linear_light_and_back() {
         for byte in 0..=255 {
             assert_eq!(srgb_from_color(color_from_srgb([byte, 255 - byte, 0])), [byte, 255 - byte, 0]);
+        }
+    }
+
+    #[test]
+    fn every_light_has_the_byte_whose_borders_it_lies_between() {
+        for step in 0..1_000_000 {
+            let light = f64::from(step) / 999_999.0;
+            let [byte, ..] = srgb_from_color(DVec3::splat(light)).map(f64::from);
+            assert!(byte == 0.0 || linear(byte - 0.5) <= light, "{light}");
+            assert!(byte == 255.0 || light < linear(byte + 0.5), "{light}");
         }
     }
 

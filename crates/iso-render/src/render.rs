@@ -142,15 +142,29 @@ impl Tile {
             normals(scene.surface, workspace, rays, outcomes, found_normals)?;
         }
         if scene.plan.runs(Pass::Shade) {
-            self.color.clear();
-            self.color.extend(rays.rays().enumerate().map(|(place, ray)| {
-                let (row, normal) = (area.row + place as u32 / area.width, found_normals[place]);
-                srgb_from_color(scene.shading.color(&outcomes[place], normal, ray.direction, row, size))
-            }));
+            self.shade(scene.shading, rays, size);
         }
         self.note(scene.plan.layers(), rays);
         self.shade = watch.lap();
         Ok(true)
+    }
+
+    /// Colours all pixels.
+    fn shade(&mut self, shading: &Shading, rays: iso_grid::Tile<'_>, size: Size) {
+        self.color.clear();
+        let width = rays.width();
+        for (line, outcomes) in self.outcomes.chunks_exact(width).enumerate() {
+            let background = shading.background(self.area.row + line as u32, size);
+            let nothing = srgb_from_color(background);
+            let normals = &self.normals[line * width..];
+            self.color.extend(outcomes.iter().enumerate().map(|(column, outcome)| match outcome {
+                Outcome::Miss => nothing,
+                _ => {
+                    let view = rays.ray(column, line).direction;
+                    srgb_from_color(shading.color(outcome, normals[column], view, background))
+                }
+            }));
+        }
     }
 
     /// Takes from the outcomes what `layers` show.

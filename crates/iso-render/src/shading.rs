@@ -63,13 +63,14 @@ impl Shading {
         }
     }
 
-    /// The colour of a pixel from what its ray found. `normal` points towards larger F; NaN where there is none.
-    pub fn color(&self, outcome: &Outcome, normal: DVec3, view: DVec3, row: u32, size: Size) -> Color {
+    /// The colour of a pixel from what its ray, which runs along `view`, found in front of `background`. `normal` points towards
+    /// larger F; NaN where there is none.
+    pub fn color(&self, outcome: &Outcome, normal: DVec3, view: DVec3, background: Color) -> Color {
         match outcome {
-            Outcome::Miss => self.background(row, size),
+            Outcome::Miss => background,
             Outcome::Undecided(_) if self.statuses_shown => color_from_srgb([214, 40, 160]),
             // Nothing is proven here, so nothing is drawn.
-            Outcome::Undecided(_) => self.background(row, size),
+            Outcome::Undecided(_) => background,
             Outcome::Touch(_) if self.statuses_shown => {
                 let lit = self.surface(normal, view);
                 0.35 * lit + 0.65 * color_from_srgb([40, 170, 90])
@@ -78,7 +79,8 @@ impl Shading {
         }
     }
 
-    fn background(&self, row: u32, size: Size) -> Color {
+    /// What is seen in a row where nothing is found.
+    pub fn background(&self, row: u32, size: Size) -> Color {
         let depth = (f64::from(row) + 0.5) / f64::from(size.height());
         self.background_top.lerp(self.background_bottom, depth)
     }

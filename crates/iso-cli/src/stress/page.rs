@@ -73,7 +73,8 @@ fn thumbnail(view: &Seen, answers: &Answers, verdicts: &[Verdict]) -> Result<Str
         _ => {
             let (row, toward) = (pixel / view.size.width() as usize, view.rays[pixel].direction);
             let normal = answers.normals[pixel];
-            srgb_from_color(shading.color(&answers.outcomes[pixel], normal, toward, row as u32, view.size))
+            let background = shading.background(row as u32, view.size);
+            srgb_from_color(shading.color(&answers.outcomes[pixel], normal, toward, background))
         }
     };
     image_address(view.size, (0..view.rays.len()).map(color).collect())
