@@ -9,7 +9,8 @@ use iso_expr::{Engine, Interpreter, Program};
 use iso_grid::{Certified, GridSettings, Surface, Tracer};
 use iso_jit::Jit;
 use iso_render::{
-    Camera, Layers, Picture, Plan, Projection, Scene, Shading, Smoothing, Status, StatusCounts, Wanted, render,
+    Camera, Layers, Picture, Plan, Projection, Scene, Shading, Smoothing, Status, StatusCounts, Wanted,
+    render,
 };
 
 use crate::depths::Depths;
@@ -59,7 +60,7 @@ impl Iso {
     /// This project's name in tables.
     pub const NAME: &'static str = "iso";
 
-    /// Compiles the kernels and prepares the method.
+    /// Compiles the kernels and prepares the method. What is too large for native code is interpreted.
     ///
     /// # Errors
     /// When the formula cannot be compiled.
@@ -69,10 +70,21 @@ impl Iso {
         method: Method,
         engine: EngineName,
     ) -> Result<Self, Box<dyn Error>> {
-        let engine: Arc<dyn Engine> = match engine {
-            EngineName::Jit => Arc::new(Jit::new()?),
-            EngineName::Interpreter => Arc::new(Interpreter),
-        };
+        let interpreted = || Self::with_engine(Arc::new(Interpreter), program, view, method);
+        match engine {
+            EngineName::Jit => {
+                Self::with_engine(Arc::new(Jit::new()?), program, view, method).or_else(|_| interpreted())
+            }
+            EngineName::Interpreter => interpreted(),
+        }
+    }
+
+    fn with_engine(
+        engine: Arc<dyn Engine>,
+        program: &Program,
+        view: SquareView,
+        method: Method,
+    ) -> Result<Self, Box<dyn Error>> {
         let surface = Surface::new(engine, program.clone());
         let region = view.region()?;
         let method = match method {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
-use iso_expr::Program;
+use iso_expr::{Engine, Interpreter, Program};
 use iso_grid::{Certified, Region, Surface};
 use iso_jit::Jit;
 use iso_render::{Camera, Layers, Plan, Projection, Scene, Shading, Size, Smoothing, View, Wanted, render};
@@ -24,12 +24,24 @@ pub struct Subject {
 impl Subject {
     /// The surface where `program` is zero, in a cube with sides of twice the radius around the origin.
     ///
+    /// What is too large for native code is interpreted, as `iso render` does.
+    ///
     /// # Errors
     /// When the formula cannot be compiled.
     pub fn new(program: &Program, radius: f64) -> Result<Self, Box<dyn Error>> {
         let start = Instant::now();
+        Self::with_engine(Arc::new(Jit::new()?), program, radius, start)
+            .or_else(|_| Self::with_engine(Arc::new(Interpreter), program, radius, start))
+    }
+
+    fn with_engine(
+        engine: Arc<dyn Engine>,
+        program: &Program,
+        radius: f64,
+        start: Instant,
+    ) -> Result<Self, Box<dyn Error>> {
         let region = Region::new(DVec3::splat(-radius), DVec3::splat(radius))?;
-        let surface = Surface::new(Arc::new(Jit::new()?), program.clone());
+        let surface = Surface::new(engine, program.clone());
         let tracer = Certified::new(&surface, region)?;
         surface.gradients()?;
         Ok(Self { surface, tracer, region, radius, preparation: start.elapsed().as_secs_f64() })
