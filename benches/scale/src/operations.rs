@@ -6,6 +6,7 @@ use iso_benches::machine::Machine;
 use iso_benches::results::Results;
 use iso_benches::samples::{Samples, rounded};
 use iso_expr::{Ast, FormulaError, Program};
+use plotters::chart::SeriesLabelPosition;
 
 use crate::picture::{Subject, threads};
 use crate::plot::{Curve, plot};
@@ -62,7 +63,8 @@ pub fn measure(machine: &Machine) -> Result<(), Box<dyn Error>> {
         }
         curves.extend([preparing, drawing]);
     }
-    plot("operations", ["operations of the formula", "milliseconds"], &curves)?;
+    let axes = ["operations of the formula", "milliseconds"];
+    plot("operations", axes, SeriesLabelPosition::UpperLeft, &curves)?;
     println!("\nEvery measurement is in benches/results/{}.", results.file_name());
     Ok(())
 }

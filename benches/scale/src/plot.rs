@@ -26,7 +26,12 @@ const COLORS: [RGBColor; 5] = [
 ///
 /// # Errors
 /// When the file cannot be written.
-pub fn plot(name: &str, axes: [&str; 2], curves: &[Curve]) -> Result<(), Box<dyn Error>> {
+pub fn plot(
+    name: &str,
+    axes: [&str; 2],
+    legend: SeriesLabelPosition,
+    curves: &[Curve],
+) -> Result<(), Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/performance");
     std::fs::create_dir_all(&folder)?;
     let path = folder.join(format!("{name}.svg"));
@@ -47,6 +52,8 @@ pub fn plot(name: &str, axes: [&str; 2], curves: &[Curve]) -> Result<(), Box<dyn
         .configure_mesh()
         .x_desc(axes[0])
         .y_desc(axes[1])
+        .x_label_formatter(&label)
+        .y_label_formatter(&label)
         .label_style(("sans-serif", 14))
         .axis_desc_style(("sans-serif", 15))
         .light_line_style(TRANSPARENT)
@@ -63,9 +70,16 @@ pub fn plot(name: &str, axes: [&str; 2], curves: &[Curve]) -> Result<(), Box<dyn
         .configure_series_labels()
         .label_font(("sans-serif", 14))
         .background_style(WHITE.mix(0.85))
-        .position(SeriesLabelPosition::UpperRight)
+        .position(legend)
         .draw()?;
     area.present()?;
     println!("docs/performance/{name}.svg");
     Ok(())
+}
+
+/// 1, 2 and 5 times powers of ten; between them there is no room.
+fn label(value: &f64) -> String {
+    let digit = value / 10f64.powf(value.log10().floor());
+    let is_named = [1.0, 2.0, 5.0].iter().any(|named| (digit - named).abs() < 1e-6);
+    if is_named { format!("{value:.0}") } else { String::new() }
 }

@@ -6,6 +6,7 @@ use iso_benches::machine::Machine;
 use iso_benches::results::Results;
 use iso_benches::samples::{Samples, rounded};
 use iso_benches::surfaces::Subject as Formula;
+use plotters::chart::SeriesLabelPosition;
 
 use crate::picture::{Subject, threads};
 use crate::plot::{Curve, plot};
@@ -55,7 +56,8 @@ pub fn measure(machine: &Machine) -> Result<(), Box<dyn Error>> {
         println!();
         curves.push(curve);
     }
-    plot("sizes", ["width of the picture, pixels", "nanoseconds a pixel"], &curves)?;
+    let axes = ["width of the picture, pixels", "nanoseconds a pixel"];
+    plot("sizes", axes, SeriesLabelPosition::UpperRight, &curves)?;
     println!("\nEvery measurement is in benches/results/{}.", results.file_name());
     Ok(())
 }
