@@ -1,0 +1,49 @@
+//! What a formula comes to in some places is compiled after a while, which changes no bit.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use iso_expr::{Ast, Engine, Interpreter};
+use iso_grid::{Certified, Outcome, Raster, Region, Surface, Tile, Tracer, Workspace};
+use iso_jit::Jit;
+
+/// A quartic inside a ball: in most places one of both decides.
+const FORMULA: &str = "max(x^4 + y^4 + z^4 - x^2 - y^2 - z^2 + 0.3, x^2 + y^2 + z^2 - 1.2)";
+
+/// Columns and rows of the picture.
+const SIDE: usize = 64;
+
+/// How the rays end in so many pictures of the surface.
+fn pictures(engine: Arc<dyn Engine>, count: usize, workspace: &mut Workspace) -> Vec<Vec<Outcome>> {
+    let value = Ast::parse(FORMULA).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
+    let region = Region::new(DVec3::splat(-1.3), DVec3::splat(1.3)).unwrap();
+    let tracer = Certified::new(&Surface::new(engine, value), region).unwrap();
+    let spacing = 2.6 / SIDE as f64;
+    let raster = Raster::Parallel {
+        middle: DVec3::new(0.9, -2.8, 0.6),
+        right: spacing * DVec3::new(0.96, 0.28, 0.0),
+        down: spacing * DVec3::new(0.0, 0.0, -1.0),
+        direction: DVec3::new(-0.28, 0.94, -0.2),
+    };
+    let first = 0.5 - 0.5 * SIDE as f64;
+    let picture = |_| {
+        let mut outcomes = vec![Outcome::Miss; SIDE * SIDE];
+        tracer.trace_tile(workspace, Tile::of(&raster, [first, first], SIDE, SIDE), &mut outcomes);
+        outcomes
+    };
+    (0..count).map(picture).collect()
+}
+
+#[test]
+fn compiled_places_end_rays_as_interpreted_ones_do() {
+    let mut workspace = Workspace::default();
+    let native = pictures(Arc::new(Jit::new().unwrap()), 12, &mut workspace);
+    let operations = workspace.counters.operations;
+    assert!(operations > 1 << 22, "{operations} operations are too few for anything to be compiled");
+    let interpreted = pictures(Arc::new(Interpreter), 1, &mut workspace);
+    let hits = interpreted[0].iter().filter(|outcome| matches!(outcome, Outcome::Hit(_))).count();
+    assert!(hits > 500, "{hits} rays hit");
+    for outcomes in native {
+        assert_eq!(outcomes, interpreted[0]);
+    }
+}
