@@ -13,11 +13,15 @@ const FORMULA: &str = "max(x^4 + y^4 + z^4 - x^2 - y^2 - z^2 + 0.3, x^2 + y^2 + 
 /// Columns and rows of the picture.
 const SIDE: usize = 64;
 
-/// How the rays end in so many pictures of the surface.
-fn pictures(engine: Arc<dyn Engine>, count: usize, workspace: &mut Workspace) -> Vec<Vec<Outcome>> {
+/// The certified method for the surface.
+fn certified(engine: Arc<dyn Engine>) -> Certified {
     let value = Ast::parse(FORMULA).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
     let region = Region::new(DVec3::splat(-1.3), DVec3::splat(1.3)).unwrap();
-    let tracer = Certified::new(&Surface::new(engine, value), region).unwrap();
+    Certified::new(&Surface::new(engine, value), region).unwrap()
+}
+
+/// How the rays end in so many pictures.
+fn pictures(tracer: &Certified, count: usize, workspace: &mut Workspace) -> Vec<Vec<Outcome>> {
     let spacing = 2.6 / SIDE as f64;
     let raster = Raster::Parallel {
         middle: DVec3::new(0.9, -2.8, 0.6),
@@ -37,13 +41,24 @@ fn pictures(engine: Arc<dyn Engine>, count: usize, workspace: &mut Workspace) ->
 #[test]
 fn compiled_places_end_rays_as_interpreted_ones_do() {
     let mut workspace = Workspace::default();
-    let native = pictures(Arc::new(Jit::new().unwrap()), 12, &mut workspace);
+    let native = pictures(&certified(Arc::new(Jit::new().unwrap())), 12, &mut workspace);
     let operations = workspace.counters.operations;
     assert!(operations > 1 << 22, "{operations} operations are too few for anything to be compiled");
-    let interpreted = pictures(Arc::new(Interpreter), 1, &mut workspace);
+    let interpreted = pictures(&certified(Arc::new(Interpreter)), 1, &mut workspace);
     let hits = interpreted[0].iter().filter(|outcome| matches!(outcome, Outcome::Hit(_))).count();
     assert!(hits > 500, "{hits} rays hit");
     for outcomes in native {
         assert_eq!(outcomes, interpreted[0]);
+    }
+    let whole = pictures(&certified(Arc::new(Interpreter)).with_whole_formula(), 1, &mut workspace);
+    for (a, b) in interpreted[0].iter().zip(&whole[0]) {
+        let agree = match (a, b) {
+            (Outcome::Hit(a), Outcome::Hit(b)) => {
+                a.bracket.start <= b.bracket.end && b.bracket.start <= a.bracket.end
+            }
+            (Outcome::Miss, Outcome::Miss) => true,
+            _ => false,
+        };
+        assert!(agree, "{a:?} in places, {b:?} by the whole formula");
     }
 }
