@@ -50,7 +50,10 @@ fn compiled_places_end_rays_as_interpreted_ones_do() {
     for outcomes in native {
         assert_eq!(outcomes, interpreted[0]);
     }
+    let in_places = std::mem::take(&mut workspace.counters).operations - operations;
     let whole = pictures(&certified(Arc::new(Interpreter)).with_whole_formula(), 1, &mut workspace);
+    let everywhere = workspace.counters.operations;
+    assert!(in_places < everywhere, "{in_places} operations in places, {everywhere} by the whole formula");
     for (a, b) in interpreted[0].iter().zip(&whole[0]) {
         let agree = match (a, b) {
             (Outcome::Hit(a), Outcome::Hit(b)) => {
