@@ -10,6 +10,9 @@ use crate::{Region, Stop};
 /// Differentiating a program takes about so much longer than shortening its derivative on a box.
 const MUCH_SHORTER: usize = 6;
 
+/// Formulas of more operations are not differentiated twice.
+const DIFFERENTIATED_TWICE: usize = 100;
+
 /// The kernels of F − C and of its gradient. Each is compiled when it is first asked for, and F − C is differentiated when
 /// the first that takes its gradient is.
 ///
@@ -25,11 +28,13 @@ pub struct Surface {
     outer: Option<(Arc<Surface>, [Interval; 3])>,
     value_and_gradient: OnceLock<Program>,
     value_and_rounding: OnceLock<Program>,
+    value_and_hessian: OnceLock<Program>,
     value_batch: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
     gradient_batch: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
     value_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     gradient_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     rounding_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
+    hessian_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     /// Shared by copies.
     cells: Arc<Mutex<Option<CellsOfRegion>>>,
     stop: Stop,
@@ -51,6 +56,8 @@ pub enum Kernel {
     GradientEnclosures,
     /// F − C, what rounding does to it and its gradient over boxes: [`Surface::rounding_bounds`].
     RoundingBounds,
+    /// F − C with its first and second derivatives over boxes: [`Surface::hessian_enclosures`].
+    HessianEnclosures,
 }
 
 impl Kernel {
@@ -59,13 +66,20 @@ impl Kernel {
         &[Self::Values, Self::ValueEnclosures, Self::GradientEnclosures, Self::RoundingBounds];
 
     /// All kernels.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Values,
         Self::Gradients,
         Self::ValueEnclosures,
         Self::GradientEnclosures,
         Self::RoundingBounds,
+        Self::HessianEnclosures,
     ];
+
+    /// Whether a kernel is likely to pay for itself: large formulas are not differentiated twice, for that may take nine times
+    /// as many operations.
+    pub fn pays(self, value: &Program) -> bool {
+        self != Self::HessianEnclosures || value.operations() <= DIFFERENTIATED_TWICE
+    }
 
     /// The kernel's name in reports.
     pub fn name(self) -> &'static str {
@@ -75,6 +89,7 @@ impl Kernel {
             Self::ValueEnclosures => "value enclosures",
             Self::GradientEnclosures => "gradient enclosures",
             Self::RoundingBounds => "rounding bounds",
+            Self::HessianEnclosures => "hessian enclosures",
         }
     }
 }
@@ -93,11 +108,13 @@ impl Surface {
             outer: None,
             value_and_gradient: OnceLock::new(),
             value_and_rounding: OnceLock::new(),
+            value_and_hessian: OnceLock::new(),
             value_batch: OnceLock::new(),
             gradient_batch: OnceLock::new(),
             value_boxes: OnceLock::new(),
             gradient_boxes: OnceLock::new(),
             rounding_boxes: OnceLock::new(),
+            hessian_boxes: OnceLock::new(),
             cells: Arc::default(),
             stop: Stop::default(),
         }
@@ -148,6 +165,7 @@ impl Surface {
         Self {
             value_and_gradient: self.value_and_gradient.clone(),
             value_and_rounding: self.value_and_rounding.clone(),
+            value_and_hessian: self.value_and_hessian.clone(),
             ..surface
         }
     }
@@ -167,6 +185,9 @@ impl Surface {
             Kernel::RoundingBounds => self
                 .value_and_rounding
                 .get_or_init(|| self.derived(kernel, || self.value.with_rounding().simplified())),
+            Kernel::HessianEnclosures => self
+                .value_and_hessian
+                .get_or_init(|| self.derived(kernel, || self.value.with_hessian().simplified())),
         }
     }
 
@@ -224,6 +245,11 @@ impl Surface {
             Kernel::ValueEnclosures => self.value_enclosures().map(drop),
             Kernel::GradientEnclosures => self.gradient_enclosures().map(drop),
             Kernel::RoundingBounds => self.rounding_bounds().map(drop),
+            Kernel::HessianEnclosures => {
+                // Proofs get by without it.
+                let _ = self.hessian_enclosures();
+                Ok(())
+            }
         }
     }
 
@@ -235,6 +261,7 @@ impl Surface {
             Kernel::ValueEnclosures => matches!(self.value_boxes.get(), Some(Ok(_))),
             Kernel::GradientEnclosures => matches!(self.gradient_boxes.get(), Some(Ok(_))),
             Kernel::RoundingBounds => matches!(self.rounding_boxes.get(), Some(Ok(_))),
+            Kernel::HessianEnclosures => matches!(self.hessian_boxes.get(), Some(Ok(_))),
         }
     }
 
@@ -244,6 +271,14 @@ impl Surface {
     /// When the engine cannot compile it.
     pub fn rounding_bounds(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
         compiled(&self.rounding_boxes, || self.engine.boxes(self.program_of(Kernel::RoundingBounds)))
+    }
+
+    /// F − C with its [first and second derivatives](Program::with_hessian) over boxes.
+    ///
+    /// # Errors
+    /// When the engine cannot compile it.
+    pub fn hessian_enclosures(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
+        compiled(&self.hessian_boxes, || self.engine.boxes(self.program_of(Kernel::HessianEnclosures)))
     }
 }
 

@@ -31,7 +31,7 @@ pub struct Plan {
     layers: Layers,
     arguments: [Decision<Axis>; 3],
     constants: [Decision<Given>; 4],
-    kernels: [Decision<Kernel>; 5],
+    kernels: [Decision<Kernel>; 6],
     passes: [Decision<Pass>; 6],
     buffers: [Decision<Buffer>; 6],
 }
@@ -278,6 +278,13 @@ impl Wanted<'_> {
                 (true, "roots found at points are proven by the rounding of F")
             }
             Kernel::RoundingBounds => (false, "the method samples"),
+            Kernel::HessianEnclosures if certified && !kernel.pays(self.program) => {
+                (false, "F is too large to be differentiated twice")
+            }
+            Kernel::HessianEnclosures if certified => {
+                (true, "where F bends one way along rays, those that graze the surface are decided together")
+            }
+            Kernel::HessianEnclosures => (false, "the method samples"),
         }
     }
 

@@ -14,6 +14,30 @@ impl Program {
     /// When the program has not just one output.
     pub fn with_gradient(&self) -> Self {
         assert_eq!(self.outputs.len(), 1, "one function is differentiated at a time");
+        let Derivatives { mut program, values, gradients } = self.differentiated();
+        let gradient = gradients[0].map(|slope| slope.unwrap_or_else(|| program.literal(0.0)));
+        program.outputs = values.into_iter().chain(gradient).collect();
+        program.pruned()
+    }
+
+    /// The program that computes this one's only output F, then its [gradient](Self::with_gradient), and then ∂²F/∂x², ∂²F/∂x∂y,
+    /// ∂²F/∂x∂z, ∂²F/∂y², ∂²F/∂y∂z and ∂²F/∂z², each a derivative of the simplified gradient.
+    ///
+    /// # Panics
+    /// When the program has not just one output.
+    pub fn with_hessian(&self) -> Self {
+        let gradient = self.with_gradient().simplified();
+        let Derivatives { mut program, values, gradients } = gradient.differentiated();
+        let [_, [xx, xy, xz], [_, yy, yz], [.., zz]] = gradients[..] else {
+            unreachable!("F and its gradient are four outputs")
+        };
+        let hessian = [xx, xy, xz, yy, yz, zz].map(|slope| slope.unwrap_or_else(|| program.literal(0.0)));
+        program.outputs = values.into_iter().chain(hessian).collect();
+        program.pruned()
+    }
+
+    /// A copy of this program with the derivatives of its outputs.
+    fn differentiated(&self) -> Derivatives {
         let mut program = Self::new();
         // For each node of this program, in the same order.
         let mut places: Vec<NodeId> = Vec::with_capacity(self.nodes.len());
@@ -36,9 +60,19 @@ impl Program {
             });
             places.push(place);
         }
-        let value = self.outputs[0].index();
-        let gradient = gradients[value].map(|slope| slope.unwrap_or_else(|| program.literal(0.0)));
-        program.outputs = std::iter::once(places[value]).chain(gradient).collect();
-        program.pruned()
+        Derivatives {
+            values: self.outputs.iter().map(|output| places[output.index()]).collect(),
+            gradients: self.outputs.iter().map(|output| gradients[output.index()]).collect(),
+            program,
+        }
     }
+}
+
+/// A program with nodes for the derivatives of what it computes, its outputs yet to be named.
+struct Derivatives {
+    program: Program,
+    /// What is differentiated.
+    values: Vec<NodeId>,
+    /// The derivatives of each along x, y and z; `None` where they are zero everywhere.
+    gradients: Vec<[Option<NodeId>; 3]>,
 }

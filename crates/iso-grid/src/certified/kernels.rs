@@ -48,7 +48,7 @@ pub(super) struct Formula {
     patience: AtomicU64,
     has_branches: bool,
     /// How many operations each kernel takes, counted when first asked for.
-    operations: [OnceLock<u64>; 5],
+    operations: [OnceLock<u64>; 6],
 }
 
 impl Formula {
@@ -187,6 +187,12 @@ impl Kernels {
     /// F, what rounding does to it, and its gradient over boxes.
     pub(super) fn rounding(&self) -> &dyn BoxKernel {
         &**compiled(self.formula.surface().rounding_bounds())
+    }
+
+    /// F with its first and second derivatives over boxes, where that pays.
+    pub(super) fn hessians(&self) -> Option<&dyn BoxKernel> {
+        let pays = Kernel::HessianEnclosures.pays(self.program());
+        pays.then(|| self.formula.surface().hessian_enclosures().ok())?.map(|kernel| &**kernel)
     }
 
     /// The corners of the box on which they hold.

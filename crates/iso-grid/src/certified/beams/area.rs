@@ -45,6 +45,19 @@ impl Area {
         [self.width, self.height].map(|length| 0.5 * (length as f64 - 1.0))
     }
 
+    /// Blocks of no more than `side` columns and rows.
+    pub(super) fn blocks(self, side: usize) -> impl Iterator<Item = Self> {
+        let Self { column, row, width, height } = self;
+        (0..height).step_by(side).flat_map(move |down| {
+            (0..width).step_by(side).map(move |right| Self {
+                column: column + right,
+                row: row + down,
+                width: side.min(width - right),
+                height: side.min(height - down),
+            })
+        })
+    }
+
     /// The two or four parts of an area that is cut in the middle of its longer side, or of both when they are about equally
     /// long; a single ray stays as it is.
     pub(super) fn quarters(self) -> impl Iterator<Item = Self> {

@@ -25,7 +25,7 @@ pub(super) struct Ball {
 }
 
 impl Ball {
-    fn around(interval: Interval) -> Self {
+    pub(super) fn around(interval: Interval) -> Self {
         let (lo, hi) = (0.5 * interval.lo, 0.5 * interval.hi);
         Self { middle: lo + hi, radius: hi - lo }.widened(f64::MIN_POSITIVE)
     }
@@ -40,7 +40,7 @@ impl Ball {
     }
 
     /// The numbers as an interval.
-    fn interval(self) -> Interval {
+    pub(super) fn interval(self) -> Interval {
         Interval::point(self.middle).minus(Interval { lo: -self.radius, hi: self.radius })
     }
 

@@ -12,10 +12,14 @@
 //! What is left when beams are small goes to the search along single rays. A ray's stretches are looked at front to back
 //! whatever beams it goes through, so that the first root found is its first root.
 
+mod arcs;
 mod area;
 mod beam;
+mod bend;
 mod form;
+mod monotone;
 mod pixels;
+mod rounding;
 mod spread;
 mod subdivision;
 

@@ -6,10 +6,13 @@ use std::sync::Arc;
 use glam::DVec3;
 use iso_expr::Interval;
 
+use super::arcs::Bowed;
 use super::area::Area;
 use super::beam::{Beam, count_in};
 use super::form::{Form, Gradient};
-use super::pixels::{Pixel, Rounding};
+use super::monotone::Secants;
+use super::pixels::Pixel;
+use super::rounding::Rounding;
 use crate::certified::Certified;
 use crate::certified::cells::Cell;
 use crate::certified::classify::free_of_zero;
@@ -116,7 +119,8 @@ pub(crate) struct Memory {
     /// The beams that the tile was cut into so far.
     pub(super) beams: Vec<Beam>,
     slabs: Vec<Slab>,
-    pub(super) pixels: Vec<Pixel>,
+    pub(super) pixels: Vec<Pixel<Secants>>,
+    pub(super) bowed: Vec<Pixel<Bowed>>,
     /// What was found out last of rounding.
     pub(super) rounding: Option<Rounding>,
 }
@@ -188,7 +192,7 @@ impl<'a> Subdivision<'a> {
                 self.search_each(&part);
             } else if part.form.is_monotone() {
                 self.follow(&part);
-            } else {
+            } else if !self.follow_bent(&part) {
                 self.divide(&part);
             }
         }
@@ -216,7 +220,7 @@ impl<'a> Subdivision<'a> {
     }
 
     /// Whether some ray of `area` is still followed.
-    fn is_open(&self, area: Area) -> bool {
+    pub(super) fn is_open(&self, area: Area) -> bool {
         area.rows().any(|row| self.memory.open[row * self.tile.width()..][area.columns()].contains(&true))
     }
 

@@ -1,0 +1,398 @@
+//! The first roots of single rays of a beam along which F bends one way, or is monotone and its slope changes little.
+//!
+//! All is written for F that bends upwards, or else for −F. Then F has no more than two roots in the part: one where it falls,
+//! which is the first, and one where it rises, before which F is negative back to the first.
+
+use std::ops::RangeInclusive;
+
+use glam::DVec3;
+use iso_expr::Interval;
+
+use super::bend::{Bend, Course};
+use super::form::ROUNDING;
+use super::pixels::{Known, Pixel, Verdict, halves_from};
+use super::subdivision::{Part, Subdivision};
+use crate::{Kernel, Span, Workspace};
+
+/// Second derivatives are asked for beams of so many columns or rows: they say little about larger ones, and smaller ones are not
+/// worth it.
+const SIZES: RangeInclusive<usize> = 4..=16;
+
+/// A beam is cut when more rays are likely to be followed in vain.
+const DOUBTFUL: usize = 64;
+
+/// Longer stretches, compared to the beam's width, are cut first.
+const LONG: f64 = 2.5;
+
+/// Blocks of so many columns and rows are first looked at as a whole.
+const BLOCK: usize = 4;
+
+/// What is known of F along a ray that bends.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Bowed {
+    /// The slope where the part's expansion is centred.
+    slope: f64,
+    /// Where F was taken last, and its value there; NaN before the first.
+    last_t: f64,
+    last: f64,
+    /// Whether F is negative where a root is wanted first.
+    starts_below: bool,
+}
+
+/// What is known of F all over a part.
+pub(super) struct Arc {
+    /// Where the part's expansion is centred.
+    t: f64,
+    /// How far the slope of a ray there may be off.
+    slope_error: f64,
+    /// −1 where this is said of −F, or else 1.
+    sign: f64,
+    /// Second derivatives along rays, their middle, half their width, and the largest size.
+    curvature: Interval,
+    middle: f64,
+    spread: f64,
+    most: f64,
+    /// Twice the least second derivative, and a little less; not positive where F does not bend upwards everywhere.
+    twice_least: f64,
+    /// The slopes along rays, where they are all of one sign.
+    slopes: Option<Interval>,
+    /// How far a value of F may be off.
+    error: f64,
+    /// How wide the enclosure of a root may be.
+    tolerance: f64,
+}
+
+impl Subdivision<'_> {
+    /// Follows each ray of a part on which F bends one way, or is monotone and its slope changes little; says whether it did.
+    pub(super) fn follow_bent(&mut self, part: &Part) -> bool {
+        let Some(bend) = self.bend(part) else { return false };
+        let kernels = self.kernels_for(part);
+        let Some(arc) = self.arc(part, &bend, kernels) else { return false };
+        let bend = if arc.sign < 0.0 { bend.negated() } else { bend };
+        let mut pixels = std::mem::take(&mut self.memory.bowed);
+        let count = self.start_bent(part, &bend, &arc, &mut pixels);
+        if let Some(count) = count {
+            self.pursue(&mut pixels[..count], kernels, &arc);
+        }
+        self.memory.bowed = pixels;
+        count.is_some()
+    }
+
+    /// F over a part to second order, where that is likely to help.
+    fn bend(&mut self, part: &Part) -> Option<Bend> {
+        let beam = &self.memory.beams[part.beam as usize];
+        let size = beam.area.width.max(beam.area.height);
+        let is_fit = part.is_inside
+            && SIZES.contains(&size)
+            && part.form.slope.radius.is_finite()
+            && beam.elongation(part.form.reach) <= LONG;
+        let kernels = &self.kernels[part.kernels as usize];
+        let hessians = is_fit.then(|| kernels.hessians()).flatten()?;
+        let Workspace { boxes, middles, scratch, counters, .. } = &mut *self.workspace;
+        let reach = part.form.reach;
+        let t = 0.5 * (reach.start + reach.end);
+        let center = beam.origins.middle + t * beam.directions.middle;
+        middles.replace(std::iter::once((&center, &center)));
+        middles.evaluate(kernels.gradients(), scratch, 4);
+        let (lo, hi): (DVec3, DVec3) = beam.bounds_in_space(reach);
+        boxes.replace(std::iter::once((&lo, &hi)));
+        boxes.evaluate(hessians, scratch, 10);
+        counters.box_evaluations += 2;
+        counters.operations +=
+            kernels.charge(Kernel::GradientEnclosures, 1) + kernels.charge(Kernel::HessianEnclosures, 1);
+        let jet = std::array::from_fn(|output| middles.interval(output, 0));
+        Bend::new(beam, (t, center), jet, std::array::from_fn(|output| boxes.decorated(output, 0)))
+    }
+
+    /// What helps to find roots by values of kernels of this number; `None` if F neither bends one way nor is monotone.
+    fn arc(&mut self, part: &Part, bend: &Bend, kernels: u32) -> Option<Arc> {
+        let slope = part.form.slope.interval();
+        let slopes = part.form.is_monotone().then_some(slope);
+        let Interval { lo, hi } = bend.curvature;
+        if slopes.is_none() && lo <= 0.0 && hi >= 0.0 {
+            return None;
+        }
+        let sign = if lo + hi < 0.0 { -1.0 } else { 1.0 };
+        let signed = |interval: Interval| if sign < 0.0 { interval.negated() } else { interval };
+        let curvature = signed(bend.curvature);
+        let beam = self.beam(part.beam);
+        let bounds = beam.bounds(part.form.reach, &self.certified.region)?;
+        let rounding = self.rounding_around(kernels, bounds).or_else(|| self.rounding(kernels, bounds))?;
+        let error = rounding.error(self.beam(part.beam), part.form.reach);
+        error.is_finite().then(|| Arc {
+            t: bend.t,
+            slope_error: bend.at(0.0, 0.0).slope_error,
+            sign,
+            curvature,
+            middle: 0.5 * (curvature.lo + curvature.hi),
+            spread: (1.0 + ROUNDING) * 0.5 * (curvature.hi - curvature.lo),
+            most: curvature.magnitude(),
+            twice_least: (2.0 - 16.0 * ROUNDING) * curvature.lo,
+            slopes: slopes.map(signed),
+            error,
+            tolerance: self.certified.accuracy * part.stretch.start.max(1.0).min(part.stretch.end),
+        })
+    }
+
+    /// Puts the rays of a part that are still followed and may have a root there in front of `pixels`, and counts them.
+    fn start_bent(
+        &mut self,
+        part: &Part,
+        bend: &Bend,
+        arc: &Arc,
+        pixels: &mut Vec<Pixel<Bowed>>,
+    ) -> Option<usize> {
+        let beam = &self.memory.beams[part.beam as usize];
+        let area = beam.area;
+        let room = area.width * area.height;
+        if pixels.len() < room {
+            pixels.resize(room, Pixel::default());
+        }
+        let (mut count, mut doubtful) = (0, 0);
+        for block in area.blocks(BLOCK) {
+            if !self.is_open(block) {
+                continue;
+            }
+            let [across, along] = block.radii();
+            let (middle_column, middle_row) = area.offset(block.column, block.row);
+            let middle = (middle_column + across, middle_row + along);
+            let stretch = [part.stretch.start - bend.t, part.stretch.end - bend.t];
+            let all = bend.around(middle, block.radii());
+            if all.stays_above(arc) || all.excludes_zero(stretch, arc) {
+                continue;
+            }
+            for (row, b) in block.rows().zip(halves_from(middle_row)) {
+                for (column, a) in block.columns().zip(halves_from(middle_column)) {
+                    let place = row * self.tile.width() + column;
+                    if !self.memory.open[place] {
+                        continue;
+                    }
+                    let course = bend.at(a, b);
+                    let pixel = &mut pixels[count];
+                    (pixel.wanted, pixel.reach) = (part.stretch, part.form.reach);
+                    pixel.t = bend.t;
+                    pixel.known =
+                        Bowed { slope: course.slope, last_t: f64::NAN, last: f64::NAN, starts_below: false };
+                    match pixel.judge(course, arc) {
+                        Verdict::Free => continue,
+                        Verdict::Open => {
+                            doubtful += usize::from(course.is_doubtful(pixel.t - bend.t, stretch, arc));
+                            if doubtful > DOUBTFUL {
+                                return None;
+                            }
+                        }
+                        Verdict::Hit | Verdict::Lost => pixel.t = bend.t,
+                    }
+                    pixel.place = place;
+                    pixel.ray = self.tile.ray(column, row);
+                    count += 1;
+                }
+            }
+        }
+        Some(count)
+    }
+}
+
+impl Known for Bowed {
+    type Sight = Arc;
+
+    #[inline]
+    fn look(pixel: &mut Pixel<Self>, value: f64, arc: &Arc) -> Verdict {
+        let value = arc.sign * value;
+        if !value.is_finite() {
+            return Verdict::Lost;
+        }
+        let Pixel { t, known, .. } = *pixel;
+        let away = t - arc.t;
+        let [slope, bending] = [known.slope, away * arc.middle];
+        let mut course = Course {
+            value,
+            value_error: arc.error,
+            slope: slope + bending,
+            slope_error: arc.slope_error + away.abs() * arc.spread + ROUNDING * (slope.abs() + bending.abs()),
+        };
+        // The slope at t is the one from the last place to here, and half the way more of bending.
+        let step = t - known.last_t;
+        let [slope, bending] = [(value - known.last) / step, 0.5 * step * arc.middle];
+        let slope_error = 0.5 * step.abs() * arc.spread
+            + 2.0 * arc.error / step.abs()
+            + ROUNDING * (slope.abs() + bending.abs());
+        if slope_error < course.slope_error {
+            (course.slope, course.slope_error) = (slope + bending, slope_error);
+        }
+        (pixel.known.last_t, pixel.known.last) = (t, value);
+        pixel.judge(course, arc)
+    }
+}
+
+impl Pixel<Bowed> {
+    /// What F and its slope at t say of the root that is wanted.
+    #[inline]
+    fn judge(&mut self, mut course: Course, arc: &Arc) -> Verdict {
+        course.slope_error += ROUNDING * (course.slope.abs() + course.slope_error);
+        if course.stays_above(arc) {
+            return Verdict::Free;
+        }
+        if let Some(slopes) = arc.slopes {
+            course.narrow(slopes);
+        }
+        let t = self.t;
+        let [from, to] = [self.wanted.start - t, self.wanted.end - t];
+        let discriminant = course.discriminant(arc);
+        let has_root = discriminant > 0.0 || arc.slopes.is_some();
+        let mut way = course.way(discriminant, self.side(arc), arc);
+        if !(has_root && from <= way && way <= to) {
+            if course.excludes_zero([from, to], arc) {
+                return Verdict::Free;
+            }
+            if arc.slopes.is_none() && discriminant > 0.0 && way < from && !self.known.starts_below {
+                if course.is_negative_at(from, arc) {
+                    self.known.starts_below = true;
+                    way = course.way(discriminant, 1.0, arc);
+                } else {
+                    way = from;
+                }
+            }
+        }
+        if has_root && let Some(verdict) = self.enclose(&course, way, arc) {
+            return verdict;
+        }
+        let next = (t + way).max(self.reach.start).min(self.reach.end);
+        if next == t || !next.is_finite() {
+            return Verdict::Lost;
+        }
+        self.t = next;
+        Verdict::Open
+    }
+
+    /// The sign of the slope at the root that is wanted.
+    fn side(&self, arc: &Arc) -> f64 {
+        match arc.slopes {
+            Some(slopes) => slopes.lo.signum(),
+            None if self.known.starts_below => 1.0,
+            None => -1.0,
+        }
+    }
+
+    /// Ends with the root in the way from t, if it is enclosed well enough: by the interval Newton method on as much
+    /// of the reach as it needs.
+    #[inline]
+    fn enclose(&mut self, course: &Course, way: f64, arc: &Arc) -> Option<Verdict> {
+        let Course { value, value_error, slope, slope_error } = *course;
+        let (t, side) = (self.t, self.side(arc));
+        let steep = slope.abs();
+        let window = 1.25 * way.abs() + 2.0 * value_error / steep + ROUNDING * t;
+        // All slopes in the window are of one sign, and those of chords from t within it are closer to that at t.
+        let changes = window * arc.most;
+        let is_simple = side * slope > (1.0 + ROUNDING) * (slope_error + changes);
+        let off = slope_error + 0.5 * changes;
+        let least = (1.0 - ROUNDING) * (steep - off);
+        let offset = value / slope;
+        let radius =
+            (1.0 + ROUNDING) * (offset.abs() * off + value_error) / least + ROUNDING * (t + offset.abs());
+        if !(is_simple && offset.abs() + radius <= window && 2.0 * radius <= arc.tolerance) {
+            return None;
+        }
+        let root = Span { start: t - offset - radius, end: t - offset + radius };
+        if self.wanted.end < root.start {
+            return Some(Verdict::Free);
+        }
+        if root.start < self.reach.start || self.reach.end < root.end || root.end < self.wanted.start {
+            return Some(Verdict::Lost);
+        }
+        self.t = (t + way).max(root.start).min(root.end);
+        self.wanted = root;
+        Some(Verdict::Hit)
+    }
+}
+
+impl Course {
+    /// Whether F is positive all along the ray, as far as the part goes.
+    #[inline]
+    fn stays_above(&self, arc: &Arc) -> bool {
+        let steepest = self.slope.abs() + self.slope_error;
+        (self.value - self.value_error) * arc.twice_least > steepest * steepest
+    }
+
+    /// Leaves out what the slope is not.
+    #[inline]
+    fn narrow(&mut self, slopes: Interval) {
+        let lo = slopes.lo.max(self.slope - self.slope_error);
+        let hi = slopes.hi.min(self.slope + self.slope_error);
+        self.slope = 0.5 * (lo + hi);
+        self.slope_error = 0.5 * (hi - lo) + ROUNDING * (lo.abs() + hi.abs());
+    }
+
+    /// Whether there may be no root after all, or none from the first to the last of these ways.
+    fn is_doubtful(&self, way: f64, [from, to]: [f64; 2], arc: &Arc) -> bool {
+        let error = self.slope.abs() * self.slope_error + arc.middle * self.value_error;
+        arc.slopes.is_none() && self.discriminant(arc) < 2.0 * error || way < from || to < way
+    }
+
+    /// Of the parabola through here: positive if it has roots.
+    #[inline]
+    fn discriminant(&self, arc: &Arc) -> f64 {
+        self.slope * self.slope - 2.0 * arc.middle * self.value
+    }
+
+    /// How far the root on a side of the parabola is, or else a place where F may be seen to be positive.
+    #[inline]
+    fn way(&self, discriminant: f64, side: f64, arc: &Arc) -> f64 {
+        let Self { value, slope, .. } = *self;
+        if discriminant > 0.0 {
+            let root = side * discriminant.sqrt();
+            if side * slope > 0.0 {
+                -2.0 * value / (slope + root)
+            } else if arc.slopes.is_none() {
+                (root - slope) / arc.middle
+            } else {
+                -value / slope
+            }
+        } else if arc.slopes.is_some() {
+            -value / slope
+        } else {
+            // There is a lowest point. Where that is all but here, another value nearby tells the slope.
+            let lowest = -slope / arc.middle;
+            let near = 0.5 * (value.abs() / arc.middle).sqrt();
+            if lowest.abs() < 0.5 * near { near.copysign(lowest) } else { lowest }
+        }
+    }
+
+    /// Whether F is certainly negative so far away.
+    fn is_negative_at(&self, way: f64, arc: &Arc) -> bool {
+        let slope = self.slope + self.slope_error.copysign(way);
+        let rise = way * (slope + 0.5 * way * arc.curvature.hi);
+        self.value + self.value_error + rise + self.slack(way.abs(), arc) < 0.0
+    }
+
+    /// Whether F certainly has no root from the first to the last of these ways.
+    fn excludes_zero(&self, [from, to]: [f64; 2], arc: &Arc) -> bool {
+        let error = self.value_error + self.slack(from.abs().max(to.abs()), arc);
+        let (lo, hi) = (self.slope - self.slope_error, self.slope + self.slope_error);
+        least(self.value - error, [lo, hi], arc.curvature.lo, [from, to]) > 0.0
+            || least(-self.value - error, [-hi, -lo], -arc.curvature.hi, [from, to]) > 0.0
+    }
+
+    /// What rounding comes to in what is said of F so far away.
+    fn slack(&self, way: f64, arc: &Arc) -> f64 {
+        ROUNDING * (self.value.abs() + way * (self.slope.abs() + self.slope_error + way * arc.most))
+    }
+}
+
+/// What no value of `value` + s·w + ½·`curvature`·w² is below for `from` ≤ w ≤ `to`, where s is the first of the slopes for w > 0
+/// and the second for w < 0.
+#[inline]
+fn least(value: f64, slopes: [f64; 2], curvature: f64, [from, to]: [f64; 2]) -> f64 {
+    let side = |slope: f64, a: f64, b: f64| {
+        let at = |way: f64| way * (slope + 0.5 * curvature * way);
+        if curvature > 0.0 { at((-slope / curvature).max(a).min(b)) } else { at(a).min(at(b)) }
+    };
+    let mut found = f64::INFINITY;
+    if to >= 0.0 {
+        found = side(slopes[0], from.max(0.0), to);
+    }
+    if from <= 0.0 {
+        found = found.min(side(slopes[1], from, to.min(0.0)));
+    }
+    value + found
+}

@@ -1,0 +1,190 @@
+//! F over a stretch of a beam to second order.
+
+use glam::DVec3;
+use iso_expr::{Decorated, Decoration, Interval};
+
+use super::beam::Beam;
+use super::form::{Ball, ROUNDING};
+
+/// F near a point of a beam: for the ray that is a columns and b rows off its middle, F at `t` is
+/// `value` · (1, a, b, a², a·b, b²) up to `value_error`, its derivative by t there is `slope` · (1, a, b) up to `slope_error`, and its
+/// second derivative by t is in `curvature` on all of the stretch.
+///
+/// This is Taylor's theorem: the gradient of F is Lipschitz continuous on a box that holds the stretch, and its generalised
+/// derivatives there are enclosed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bend {
+    pub(super) t: f64,
+    value: [f64; 6],
+    value_error: f64,
+    slope: [f64; 3],
+    slope_error: f64,
+    pub(super) curvature: Interval,
+}
+
+/// F and its derivative along a ray at some t, each with a bound of how far it may be off.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Course {
+    pub(super) value: f64,
+    pub(super) value_error: f64,
+    pub(super) slope: f64,
+    pub(super) slope_error: f64,
+}
+
+/// Vectors, or the rows of matrices, no farther from `middle` than `radius`, component by component.
+#[derive(Clone, Copy)]
+struct Rows<const N: usize> {
+    middle: [DVec3; N],
+    radius: [DVec3; N],
+}
+
+impl<const N: usize> Rows<N> {
+    fn around(intervals: [[Interval; 3]; N]) -> Self {
+        let balls = intervals.map(|row| row.map(Ball::around));
+        Self {
+            middle: balls.map(|row| row.map(|ball| ball.middle).into()),
+            radius: balls.map(|row| row.map(|ball| ball.radius).into()),
+        }
+    }
+}
+
+/// The product of a matrix, given by its rows, and a vector.
+fn product(rows: &[DVec3; 3], vector: DVec3) -> DVec3 {
+    DVec3::from_array(rows.map(|row| row.dot(vector)))
+}
+
+impl Bend {
+    /// F around the middle of a beam at `t`, where F and its gradient are `jet`. The `hessian` holds on a box around the stretch: F, its
+    /// gradient and then its second derivatives, as [`Program::with_hessian`](iso_expr::Program::with_hessian) orders them. `None`
+    /// where the gradient is not continuous, or nothing is bounded.
+    pub(super) fn new(
+        beam: &Beam,
+        (t, center): (f64, DVec3),
+        jet: [Interval; 4],
+        hessian: [Decorated; 10],
+    ) -> Option<Self> {
+        let [over_all, first @ .., xx, xy, xz, yy, yz, zz] = hessian;
+        let [x, y, z] = first;
+        let is_smooth = [over_all, x, y, z].iter().all(|found| found.decoration >= Decoration::Continuous)
+            && [xx, xy, xz, yy, yz, zz].iter().all(|found| found.decoration >= Decoration::Defined);
+        if !is_smooth {
+            return None;
+        }
+        let hessian = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]].map(|row| row.map(|found| found.interval));
+        let [value, gradient @ ..] = jet;
+        let bend = Self::expanded(beam, (t, center), Ball::around(value), gradient, hessian);
+        let is_finite =
+            bend.value_error.is_finite() && bend.slope_error.is_finite() && bend.curvature.is_bounded();
+        is_finite.then_some(bend)
+    }
+
+    fn expanded(
+        beam: &Beam,
+        (t, center): (f64, DVec3),
+        value: Ball,
+        gradient: [Interval; 3],
+        hessian: [[Interval; 3]; 3],
+    ) -> Self {
+        let (o, d) = (&beam.origins, &beam.directions);
+        let Rows { middle: [g], radius: [g_radius] } = Rows::around([gradient]);
+        let Rows { middle: h, radius: h_radius } = Rows::around(hessian);
+        let (g_size, h_size) = (g.abs(), h.map(DVec3::abs));
+        let h_most = [0, 1, 2].map(|row| h_size[row] + h_radius[row]);
+        // From the center to the point at t on a ray: a·column + b·row, and no more than `off` besides.
+        let [column, row] = beam.across(t);
+        let shift = (o.middle - center) + t * d.middle;
+        let off = shift.abs() + o.rest + t * d.rest + ROUNDING * (o.size + t * d.size + center.abs());
+        let across = beam.radii[0] * column.abs() + beam.radii[1] * row.abs();
+
+        let value_error = value.radius
+            + g_radius.dot(across)
+            + 0.5 * across.dot(product(&h_radius, across))
+            + off.dot(g_size + g_radius + product(&h_most, across + off))
+            + ROUNDING * (value.middle.abs() + g_size.dot(across) + across.dot(product(&h_size, across)));
+        let slope_error = g_radius.dot(d.size)
+            + g_size.dot(d.rest)
+            + product(&h_size, across).dot(d.radius)
+            + product(&h_radius, across).dot(d.size)
+            + product(&h_most, off).dot(d.size)
+            + ROUNDING * (g_size + product(&h_size, across)).dot(d.size);
+        let (h_column, h_row) = (product(&h, column), product(&h, row));
+        Self {
+            t,
+            value: [
+                value.middle,
+                g.dot(column),
+                g.dot(row),
+                0.5 * column.dot(h_column),
+                row.dot(h_column),
+                0.5 * row.dot(h_row),
+            ],
+            value_error: (1.0 + ROUNDING) * value_error + f64::MIN_POSITIVE,
+            slope: [
+                g.dot(d.middle),
+                h_column.dot(d.middle) + g.dot(d.by_column),
+                h_row.dot(d.middle) + g.dot(d.by_row),
+            ],
+            slope_error: (1.0 + ROUNDING) * slope_error + f64::MIN_POSITIVE,
+            curvature: curvature(beam, hessian),
+        }
+    }
+
+    /// The same of −F.
+    pub(super) fn negated(self) -> Self {
+        Self {
+            value: self.value.map(|part| -part),
+            slope: self.slope.map(|part| -part),
+            curvature: self.curvature.negated(),
+            ..self
+        }
+    }
+
+    /// What is known at `t` of the ray that is so many columns and rows off the middle.
+    #[inline]
+    pub(super) fn at(&self, across: f64, along: f64) -> Course {
+        let [value, by_column, by_row, by_columns, by_both, by_rows] = self.value;
+        let [slope, slope_by_column, slope_by_row] = self.slope;
+        Course {
+            value: value
+                + across * (by_column + across * by_columns + along * by_both)
+                + along * (by_row + along * by_rows),
+            value_error: self.value_error,
+            slope: slope + across * slope_by_column + along * slope_by_row,
+            slope_error: self.slope_error,
+        }
+    }
+
+    /// What is known at `t` of all rays no more than `radii` columns and rows from the one that is so many off the middle.
+    #[inline]
+    pub(super) fn around(&self, (across, along): (f64, f64), radii: [f64; 2]) -> Course {
+        let [_, by_column, by_row, by_columns, by_both, by_rows] = self.value;
+        let [_, slope_by_column, slope_by_row] = self.slope;
+        let course = self.at(across, along);
+        let column = by_column + 2.0 * across * by_columns + along * by_both;
+        let row = by_row + 2.0 * along * by_rows + across * by_both;
+        let [a, b] = radii;
+        let value = a * (column.abs() + a * by_columns.abs() + b * by_both.abs())
+            + b * (row.abs() + b * by_rows.abs());
+        let slope = a * slope_by_column.abs() + b * slope_by_row.abs();
+        Course {
+            value_error: (1.0 + ROUNDING) * (course.value_error + value) + ROUNDING * course.value.abs(),
+            slope_error: (1.0 + ROUNDING) * (course.slope_error + slope) + ROUNDING * course.slope.abs(),
+            ..course
+        }
+    }
+}
+
+/// The second derivatives along all rays of a beam.
+fn curvature(beam: &Beam, hessian: [[Interval; 3]; 3]) -> Interval {
+    let directions = [0, 1, 2].map(|axis| {
+        let (middle, radius) = (beam.directions.middle[axis], beam.directions.radius[axis]);
+        Interval::point(middle).plus(Interval { lo: -radius, hi: radius })
+    });
+    let mut sum = Interval::point(0.0);
+    for (row, a) in hessian.into_iter().zip(directions) {
+        for (entry, b) in row.into_iter().zip(directions) {
+            sum = sum.plus(entry.times(a.times(b)));
+        }
+    }
+    sum
+}

@@ -1,0 +1,80 @@
+//! Bounds of what rounding does to F.
+
+use glam::DVec3;
+use iso_expr::interval::{round_down, round_up};
+use iso_expr::{Decoration, Interval, Program};
+
+use super::beam::Beam;
+use super::form::ROUNDING;
+use super::subdivision::Subdivision;
+use crate::{Kernel, Span, Workspace};
+
+/// How many times its size a box for which rounding is bounded grows at each side, so that it holds neighbours too.
+const AROUND: f64 = 2.0;
+
+/// What rounding does to F on a box.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rounding {
+    /// The number of the kernels whose values are meant.
+    kernels: u32,
+    lo: DVec3,
+    hi: DVec3,
+    /// By how many [units](Program::ROUNDING_UNIT) a value at a point may be off.
+    of_values: f64,
+    /// What no derivative exceeds.
+    gradient: DVec3,
+}
+
+impl Rounding {
+    fn covers(&self, kernels: u32, lo: DVec3, hi: DVec3) -> bool {
+        self.kernels == kernels && self.lo.cmple(lo).all() && hi.cmple(self.hi).all()
+    }
+
+    /// How far F computed at a computed point of one of the beam's rays may be from F at the point itself.
+    pub(super) fn error(&self, beam: &Beam, reach: Span) -> f64 {
+        let way = reach.end * beam.directions.size;
+        let points = self.gradient.dot(way + self.lo.abs().max(self.hi.abs()) + f64::MIN_POSITIVE);
+        (1.0 + ROUNDING) * Program::ROUNDING_UNIT * (self.of_values + points)
+    }
+}
+
+impl Subdivision<'_> {
+    /// What rounding does to F on a box and around it, if that is bounded: neighbouring parts share it.
+    pub(super) fn rounding_around(&mut self, kernels: u32, (lo, hi): (DVec3, DVec3)) -> Option<Rounding> {
+        if let Some(known) = self.memory.rounding.filter(|known| known.covers(kernels, lo, hi)) {
+            return Some(known);
+        }
+        let (region, room) = (&self.certified.region, AROUND * (hi - lo));
+        let (least, most) = self.kernels(kernels).corners();
+        let around = [(lo - room).max(region.min()).max(least), (hi + room).min(region.max()).min(most)];
+        let found = self.rounding(kernels, (around[0].min(lo), around[1].max(hi)));
+        self.memory.rounding = found.or(self.memory.rounding);
+        found
+    }
+
+    /// What rounding does to F on a box.
+    pub(super) fn rounding(&mut self, kernels: u32, (lo, hi): (DVec3, DVec3)) -> Option<Rounding> {
+        let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
+        let of_part = &self.kernels[kernels as usize];
+        let sides = outwards(lo, hi);
+        let corners = [sides.map(|side| side.lo), sides.map(|side| side.hi)].map(DVec3::from_array);
+        boxes.replace(std::iter::once((&corners[0], &corners[1])));
+        boxes.evaluate(of_part.rounding(), scratch, 5);
+        counters.box_evaluations += 1;
+        counters.operations += of_part.charge(Kernel::RoundingBounds, 1);
+        let decoration = |output| boxes.decorated(output, 0).decoration;
+        let is_known = decoration(0) == Decoration::Common
+            && (1..5).all(|output| decoration(output) >= Decoration::Defined);
+        let magnitude = |output| boxes.interval(output, 0).magnitude();
+        let gradient = DVec3::from_array([2, 3, 4].map(magnitude));
+        let found = Rounding { kernels, lo, hi, of_values: magnitude(1), gradient };
+        let is_bounded = is_known && found.of_values.is_finite() && gradient.is_finite();
+        is_bounded.then_some(found)
+    }
+}
+
+/// The sides of a box in which the points of its rays lie, which are computed by two roundings: it is two doubles larger at each
+/// side.
+pub(super) fn outwards(lo: DVec3, hi: DVec3) -> [Interval; 3] {
+    [0, 1, 2].map(|axis| Interval { lo: round_down(round_down(lo[axis])), hi: round_up(round_up(hi[axis])) })
+}
