@@ -1,6 +1,7 @@
 //! Programs: hash-consed, straight-line descriptions of what is to be evaluated.
 
 mod display;
+mod extreme;
 mod gradient;
 mod powers;
 mod rebuild;

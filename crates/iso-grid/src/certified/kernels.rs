@@ -49,6 +49,8 @@ pub(super) struct Formula {
     has_branches: bool,
     /// How many operations each kernel takes, counted when first asked for.
     operations: [OnceLock<u64>; 6],
+    /// Those of which it is the greatest everywhere, found when first asked for; none when it is no maximum.
+    faces: OnceLock<Vec<Arc<Formula>>>,
 }
 
 impl Formula {
@@ -61,6 +63,7 @@ impl Formula {
             patience,
             has_branches,
             operations: Default::default(),
+            faces: OnceLock::new(),
         }
     }
 
@@ -125,15 +128,28 @@ impl Kernels {
         domain: Bounds,
     ) -> Option<Self> {
         let program = self.program().shortened(domain)?;
+        Some(Self { formula: self.one_of(formulas, program), domain })
+    }
+
+    /// Kernels of those of which F is the greatest wherever these hold, if it is a maximum there.
+    pub(super) fn faces(&self, formulas: &Mutex<Vec<Arc<Formula>>>) -> Vec<Self> {
+        let faces = self.formula.faces.get_or_init(|| {
+            let programs = self.program().greatest_of().unwrap_or_default();
+            programs.into_iter().map(|program| self.one_of(formulas, program)).collect()
+        });
+        faces.iter().map(|face| Self { formula: Arc::clone(face), domain: self.domain }).collect()
+    }
+
+    /// The one of `formulas` with this program, which is put there if need be.
+    fn one_of(&self, formulas: &Mutex<Vec<Arc<Formula>>>, program: Program) -> Arc<Formula> {
         // Formulas are only ever put in whole.
         let mut formulas = formulas.lock().unwrap_or_else(PoisonError::into_inner);
         let known = formulas.iter().find(|formula| *formula.surface.program() == program);
-        let formula = known.map(Arc::clone).unwrap_or_else(|| {
+        known.map(Arc::clone).unwrap_or_else(|| {
             let formula = Arc::new(Formula::new(self.formula.surface.reduced_to(program), OFTEN));
             formulas.push(Arc::clone(&formula));
             formula
-        });
-        Some(Self { formula, domain })
+        })
     }
 
     /// Whether there is anything that a box may decide.

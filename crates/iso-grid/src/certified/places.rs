@@ -94,6 +94,11 @@ impl Places {
         }
     }
 
+    /// Kernels of those of which F is the greatest wherever some kernels hold, if it is a maximum there.
+    pub(super) fn faces(&self, kernels: &Kernels) -> Vec<Arc<Kernels>> {
+        kernels.faces(&self.formulas).into_iter().map(Arc::new).collect()
+    }
+
     /// The smallest place that a box lies in.
     fn around(&self, lo: DVec3, hi: DVec3) -> Place {
         let longest = ((hi - lo) / self.extent).max_element();

@@ -1,31 +1,14 @@
-//! The first roots of single rays of a beam along which F bends one way, or is monotone and its slope changes little.
+//! First roots along single rays on which F bends one way, or is monotone.
 //!
 //! All is written for F that bends upwards, or else for −F. Then F has no more than two roots in the part: one where it falls,
 //! which is the first, and one where it rises, before which F is negative back to the first.
 
-use std::ops::RangeInclusive;
-
-use glam::DVec3;
 use iso_expr::Interval;
 
 use super::bend::{Bend, Course};
-use super::form::ROUNDING;
-use super::pixels::{Known, Pixel, Verdict, halves_from};
-use super::subdivision::{Part, Subdivision};
-use crate::{Kernel, Span, Workspace};
-
-/// Second derivatives are asked for beams of so many columns or rows: they say little about larger ones, and smaller ones are not
-/// worth it.
-const SIZES: RangeInclusive<usize> = 4..=16;
-
-/// A beam is cut when more rays are likely to be followed in vain.
-const DOUBTFUL: usize = 64;
-
-/// Longer stretches, compared to the beam's width, are cut first.
-const LONG: f64 = 2.5;
-
-/// Blocks of so many columns and rows are first looked at as a whole.
-const BLOCK: usize = 4;
+use super::form::{Ball, ROUNDING};
+use super::pixels::{Known, Pixel, Verdict};
+use crate::{Ray, Span};
 
 /// What is known of F along a ray that bends.
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,68 +29,29 @@ pub(super) struct Arc {
     /// How far the slope of a ray there may be off.
     slope_error: f64,
     /// −1 where this is said of −F, or else 1.
-    sign: f64,
+    pub(super) sign: f64,
     /// Second derivatives along rays, their middle, half their width, and the largest size.
     curvature: Interval,
     middle: f64,
     spread: f64,
     most: f64,
-    /// Twice the least second derivative, and a little less; not positive where F does not bend upwards everywhere.
+    /// Twice the least second derivative, and a little less; zero where F does not bend upwards everywhere.
     twice_least: f64,
     /// The slopes along rays, where they are all of one sign.
     slopes: Option<Interval>,
+    /// Whether only roots are wanted where the function falls, whose sign `sign` may have changed.
+    falls: bool,
     /// How far a value of F may be off.
     error: f64,
     /// How wide the enclosure of a root may be.
     tolerance: f64,
 }
 
-impl Subdivision<'_> {
-    /// Follows each ray of a part on which F bends one way, or is monotone and its slope changes little; says whether it did.
-    pub(super) fn follow_bent(&mut self, part: &Part) -> bool {
-        let Some(bend) = self.bend(part) else { return false };
-        let kernels = self.kernels_for(part);
-        let Some(arc) = self.arc(part, &bend, kernels) else { return false };
-        let bend = if arc.sign < 0.0 { bend.negated() } else { bend };
-        let mut pixels = std::mem::take(&mut self.memory.bowed);
-        let count = self.start_bent(part, &bend, &arc, &mut pixels);
-        if let Some(count) = count {
-            self.pursue(&mut pixels[..count], kernels, &arc);
-        }
-        self.memory.bowed = pixels;
-        count.is_some()
-    }
-
-    /// F over a part to second order, where that is likely to help.
-    fn bend(&mut self, part: &Part) -> Option<Bend> {
-        let beam = &self.memory.beams[part.beam as usize];
-        let size = beam.area.width.max(beam.area.height);
-        let is_fit = part.is_inside
-            && SIZES.contains(&size)
-            && part.form.slope.radius.is_finite()
-            && beam.elongation(part.form.reach) <= LONG;
-        let kernels = &self.kernels[part.kernels as usize];
-        let hessians = is_fit.then(|| kernels.hessians()).flatten()?;
-        let Workspace { boxes, middles, scratch, counters, .. } = &mut *self.workspace;
-        let reach = part.form.reach;
-        let t = 0.5 * (reach.start + reach.end);
-        let center = beam.origins.middle + t * beam.directions.middle;
-        middles.replace(std::iter::once((&center, &center)));
-        middles.evaluate(kernels.gradients(), scratch, 4);
-        let (lo, hi): (DVec3, DVec3) = beam.bounds_in_space(reach);
-        boxes.replace(std::iter::once((&lo, &hi)));
-        boxes.evaluate(hessians, scratch, 10);
-        counters.box_evaluations += 2;
-        counters.operations +=
-            kernels.charge(Kernel::GradientEnclosures, 1) + kernels.charge(Kernel::HessianEnclosures, 1);
-        let jet = std::array::from_fn(|output| middles.interval(output, 0));
-        Bend::new(beam, (t, center), jet, std::array::from_fn(|output| boxes.decorated(output, 0)))
-    }
-
-    /// What helps to find roots by values of kernels of this number; `None` if F neither bends one way nor is monotone.
-    fn arc(&mut self, part: &Part, bend: &Bend, kernels: u32) -> Option<Arc> {
-        let slope = part.form.slope.interval();
-        let slopes = part.form.is_monotone().then_some(slope);
+impl Arc {
+    /// What helps to find roots where F is as `bend` says with slopes in `slope`, and values are off by no more than `error`; `None` if
+    /// F neither bends one way nor is monotone. Brackets are to be as narrow as `tolerance`.
+    pub(super) fn new(bend: &Bend, slope: Ball, error: f64, tolerance: f64) -> Option<Self> {
+        let slopes = slope.excludes_zero().then(|| slope.interval());
         let Interval { lo, hi } = bend.curvature;
         if slopes.is_none() && lo <= 0.0 && hi >= 0.0 {
             return None;
@@ -115,81 +59,35 @@ impl Subdivision<'_> {
         let sign = if lo + hi < 0.0 { -1.0 } else { 1.0 };
         let signed = |interval: Interval| if sign < 0.0 { interval.negated() } else { interval };
         let curvature = signed(bend.curvature);
-        let beam = self.beam(part.beam);
-        let bounds = beam.bounds(part.form.reach, &self.certified.region)?;
-        let rounding = self.rounding_around(kernels, bounds).or_else(|| self.rounding(kernels, bounds))?;
-        let error = rounding.error(self.beam(part.beam), part.form.reach);
-        error.is_finite().then(|| Arc {
+        error.is_finite().then(|| Self {
             t: bend.t,
-            slope_error: bend.at(0.0, 0.0).slope_error,
+            slope_error: bend.slope_error,
             sign,
             curvature,
             middle: 0.5 * (curvature.lo + curvature.hi),
             spread: (1.0 + ROUNDING) * 0.5 * (curvature.hi - curvature.lo),
             most: curvature.magnitude(),
-            twice_least: (2.0 - 16.0 * ROUNDING) * curvature.lo,
+            twice_least: (2.0 - 16.0 * ROUNDING) * curvature.lo.max(0.0),
             slopes: slopes.map(signed),
+            falls: false,
             error,
-            tolerance: self.certified.accuracy * part.stretch.start.max(1.0).min(part.stretch.end),
+            tolerance,
         })
     }
 
-    /// Puts the rays of a part that are still followed and may have a root there in front of `pixels`, and counts them.
-    fn start_bent(
-        &mut self,
-        part: &Part,
-        bend: &Bend,
-        arc: &Arc,
-        pixels: &mut Vec<Pixel<Bowed>>,
-    ) -> Option<usize> {
-        let beam = &self.memory.beams[part.beam as usize];
-        let area = beam.area;
-        let room = area.width * area.height;
-        if pixels.len() < room {
-            pixels.resize(room, Pixel::default());
-        }
-        let (mut count, mut doubtful) = (0, 0);
-        for block in area.blocks(BLOCK) {
-            if !self.is_open(block) {
-                continue;
-            }
-            let [across, along] = block.radii();
-            let (middle_column, middle_row) = area.offset(block.column, block.row);
-            let middle = (middle_column + across, middle_row + along);
-            let stretch = [part.stretch.start - bend.t, part.stretch.end - bend.t];
-            let all = bend.around(middle, block.radii());
-            if all.stays_above(arc) || all.excludes_zero(stretch, arc) {
-                continue;
-            }
-            for (row, b) in block.rows().zip(halves_from(middle_row)) {
-                for (column, a) in block.columns().zip(halves_from(middle_column)) {
-                    let place = row * self.tile.width() + column;
-                    if !self.memory.open[place] {
-                        continue;
-                    }
-                    let course = bend.at(a, b);
-                    let pixel = &mut pixels[count];
-                    (pixel.wanted, pixel.reach) = (part.stretch, part.form.reach);
-                    pixel.t = bend.t;
-                    pixel.known =
-                        Bowed { slope: course.slope, last_t: f64::NAN, last: f64::NAN, starts_below: false };
-                    match pixel.judge(course, arc) {
-                        Verdict::Free => continue,
-                        Verdict::Open => {
-                            doubtful += usize::from(course.is_doubtful(pixel.t - bend.t, stretch, arc));
-                            if doubtful > DOUBTFUL {
-                                return None;
-                            }
-                        }
-                        Verdict::Hit | Verdict::Lost => pixel.t = bend.t,
-                    }
-                    pixel.place = place;
-                    pixel.ray = self.tile.ray(column, row);
-                    count += 1;
-                }
-            }
-        }
-        Some(count)
+    /// The same where only roots are wanted at which F falls; `None` if F may bend downwards without being monotone.
+    pub(super) fn falling(self) -> Option<Self> {
+        (self.sign > 0.0 || self.slopes.is_some()).then_some(Self { falls: true, ..self })
+    }
+
+    /// How far a value of F may be off.
+    pub(super) fn error(&self) -> f64 {
+        self.error
+    }
+
+    /// Whether F rises along every ray.
+    pub(super) fn rises(&self) -> bool {
+        self.slopes.is_some_and(|slopes| self.sign * slopes.lo > 0.0)
     }
 }
 
@@ -226,12 +124,24 @@ impl Known for Bowed {
 }
 
 impl Pixel<Bowed> {
+    /// A ray on which F is `course` where the part's expansion is centred.
+    #[inline]
+    pub(super) fn starting(
+        (place, ray): (usize, Ray),
+        [wanted, reach]: [Span; 2],
+        course: &Course,
+        arc: &Arc,
+    ) -> Self {
+        let known = Bowed { slope: course.slope, last_t: f64::NAN, last: f64::NAN, starts_below: false };
+        Self { place, ray, wanted, reach, t: arc.t, known }
+    }
+
     /// What F and its slope at t say of the root that is wanted.
     #[inline]
-    fn judge(&mut self, mut course: Course, arc: &Arc) -> Verdict {
+    pub(super) fn judge(&mut self, mut course: Course, arc: &Arc) -> Verdict {
         course.slope_error += ROUNDING * (course.slope.abs() + course.slope_error);
         if course.stays_above(arc) {
-            return Verdict::Free;
+            return self.free(1.0, arc);
         }
         if let Some(slopes) = arc.slopes {
             course.narrow(slopes);
@@ -242,11 +152,14 @@ impl Pixel<Bowed> {
         let has_root = discriminant > 0.0 || arc.slopes.is_some();
         let mut way = course.way(discriminant, self.side(arc), arc);
         if !(has_root && from <= way && way <= to) {
-            if course.excludes_zero([from, to], arc) {
-                return Verdict::Free;
+            if let Some(sign) = course.sign_between([from, to], arc) {
+                return self.free(sign, arc);
             }
             if arc.slopes.is_none() && discriminant > 0.0 && way < from && !self.known.starts_below {
                 if course.is_negative_at(from, arc) {
+                    if arc.falls {
+                        return Verdict::Below;
+                    }
                     self.known.starts_below = true;
                     way = course.way(discriminant, 1.0, arc);
                 } else {
@@ -263,6 +176,11 @@ impl Pixel<Bowed> {
         }
         self.t = next;
         Verdict::Open
+    }
+
+    /// What it means that there is no root, since F, or −F, is of one sign.
+    fn free(&self, sign: f64, arc: &Arc) -> Verdict {
+        if arc.falls && sign * arc.sign < 0.0 { Verdict::Below } else { Verdict::Free }
     }
 
     /// The sign of the slope at the root that is wanted.
@@ -295,7 +213,7 @@ impl Pixel<Bowed> {
         }
         let root = Span { start: t - offset - radius, end: t - offset + radius };
         if self.wanted.end < root.start {
-            return Some(Verdict::Free);
+            return Some(self.free(-side, arc));
         }
         if root.start < self.reach.start || self.reach.end < root.end || root.end < self.wanted.start {
             return Some(Verdict::Lost);
@@ -324,7 +242,7 @@ impl Course {
     }
 
     /// Whether there may be no root after all, or none from the first to the last of these ways.
-    fn is_doubtful(&self, way: f64, [from, to]: [f64; 2], arc: &Arc) -> bool {
+    pub(super) fn is_doubtful(&self, way: f64, [from, to]: [f64; 2], arc: &Arc) -> bool {
         let error = self.slope.abs() * self.slope_error + arc.middle * self.value_error;
         arc.slopes.is_none() && self.discriminant(arc) < 2.0 * error || way < from || to < way
     }
@@ -365,12 +283,27 @@ impl Course {
         self.value + self.value_error + rise + self.slack(way.abs(), arc) < 0.0
     }
 
-    /// Whether F certainly has no root from the first to the last of these ways.
-    fn excludes_zero(&self, [from, to]: [f64; 2], arc: &Arc) -> bool {
+    /// The sign of F from the first to the last of these ways, if it certainly is the same everywhere.
+    #[inline]
+    pub(super) fn sign_between(&self, [from, to]: [f64; 2], arc: &Arc) -> Option<f64> {
+        if self.stays_above(arc) {
+            return Some(1.0);
+        }
         let error = self.value_error + self.slack(from.abs().max(to.abs()), arc);
         let (lo, hi) = (self.slope - self.slope_error, self.slope + self.slope_error);
-        least(self.value - error, [lo, hi], arc.curvature.lo, [from, to]) > 0.0
-            || least(-self.value - error, [-hi, -lo], -arc.curvature.hi, [from, to]) > 0.0
+        if least(self.value - error, [lo, hi], arc.curvature.lo, [from, to]) > 0.0 {
+            return Some(1.0);
+        }
+        let is_below = least(-self.value - error, [-hi, -lo], -arc.curvature.hi, [from, to]) > 0.0;
+        is_below.then_some(-1.0)
+    }
+
+    /// About how far the root is that is wanted first, if there is one on the parabola; infinite if it has none.
+    pub(super) fn way_to_root(&self, arc: &Arc) -> f64 {
+        let discriminant = self.discriminant(arc);
+        let side = arc.slopes.map_or(-1.0, |slopes| slopes.lo.signum());
+        let has_root = discriminant > 0.0 || arc.slopes.is_some();
+        if has_root { self.way(discriminant, side, arc) } else { f64::INFINITY }
     }
 
     /// What rounding comes to in what is said of F so far away.

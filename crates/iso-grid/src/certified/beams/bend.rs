@@ -18,7 +18,7 @@ pub(super) struct Bend {
     value: [f64; 6],
     value_error: f64,
     slope: [f64; 3],
-    slope_error: f64,
+    pub(super) slope_error: f64,
     pub(super) curvature: Interval,
 }
 

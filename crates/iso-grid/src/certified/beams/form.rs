@@ -30,12 +30,12 @@ impl Ball {
         Self { middle: lo + hi, radius: hi - lo }.widened(f64::MIN_POSITIVE)
     }
 
-    fn magnitude(self) -> f64 {
+    pub(super) fn magnitude(self) -> f64 {
         (1.0 + ROUNDING) * (self.middle.abs() + self.radius)
     }
 
     /// Whether zero is certainly not one of the numbers.
-    fn excludes_zero(self) -> bool {
+    pub(super) fn excludes_zero(self) -> bool {
         self.middle.abs() > self.radius && self.radius < f64::INFINITY
     }
 
@@ -160,7 +160,13 @@ impl Form {
 
     /// Whether F is certainly nowhere zero.
     pub(super) fn excludes_zero(&self) -> bool {
-        self.value.widened(self.across + self.slope.magnitude() * self.length()).excludes_zero()
+        self.sign().is_some()
+    }
+
+    /// The sign of F, if it is the same everywhere.
+    pub(super) fn sign(&self) -> Option<f64> {
+        let values = self.value.widened(self.across + self.slope.magnitude() * self.length());
+        values.excludes_zero().then(|| values.middle.signum())
     }
 
     /// Whether F certainly rises along every ray, or falls along every ray.

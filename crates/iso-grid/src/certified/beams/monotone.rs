@@ -76,6 +76,8 @@ impl Subdivision<'_> {
         let model = form.model(beam);
         if form.is_even() && (is_small || self.most_hit(part, &model)) {
             self.follow_each(part, &model);
+        } else if self.follow_crease(part) {
+            // Nothing is left to do.
         } else if !is_small {
             self.divide_beam(part);
         } else if narrowed.end - narrowed.start < 0.5 * (stretch.end - stretch.start) {
@@ -112,14 +114,14 @@ impl Subdivision<'_> {
         let Some(sight) = self.sight(part, kernels) else { return self.search_each(part) };
         let mut pixels = std::mem::take(&mut self.memory.pixels);
         let count = self.start(part, model, &mut pixels);
-        self.pursue(&mut pixels[..count], kernels, &sight);
+        self.pursue_and_settle(&mut pixels[..count], kernels, &sight);
         self.memory.pixels = pixels;
     }
 
     /// What values by kernels of this number say over a part. `None` when rounding is not bounded there.
     fn sight(&mut self, part: &Part, kernels: u32) -> Option<Sight> {
         let form = &part.form;
-        let tolerance = self.certified.accuracy * part.stretch.start.max(1.0).min(part.stretch.end);
+        let tolerance = self.tolerance(part);
         let bounds = self.beam(part.beam).bounds(form.reach, &self.certified.region)?;
         let known = self.rounding_around(kernels, bounds);
         let sight =

@@ -44,19 +44,69 @@ pub(super) enum Verdict {
     Hit,
     /// Another place is nearer to the root.
     Open,
+    /// There is no root where one is looked for at which F falls: F is negative at the start already.
+    Below,
     /// Single values do not tell.
     Lost,
 }
 
+/// How the pursuit of a ray ended, if not without a root.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ended {
+    /// Which ray of the tile.
+    pub(super) place: usize,
+    pub(super) end: End,
+}
+
+/// An end of a pursuit.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum End {
+    Hit(Hit),
+    /// The stretch is to be searched otherwise.
+    Lost(Span),
+}
+
 impl Subdivision<'_> {
-    /// Ends or goes on with each ray by its root in the part.
-    pub(super) fn pursue<K: Known>(&mut self, mut pixels: &mut [Pixel<K>], kernels: u32, sight: &K::Sight) {
+    /// Ends or goes on with each ray by its root in the part, and notes how it ended if it may have one.
+    pub(super) fn pursue<K: Known>(
+        &mut self,
+        mut pixels: &mut [Pixel<K>],
+        kernels: u32,
+        sight: &K::Sight,
+        ended: &mut Vec<Ended>,
+    ) {
         for step in 1..=STEPS {
             if pixels.is_empty() {
                 break;
             }
-            let count = self.approach(pixels, kernels, sight, step == STEPS);
+            let count = self.approach(pixels, (kernels, sight), step == STEPS, ended);
             pixels = &mut pixels[..count];
+        }
+    }
+
+    /// Pursues each ray where the part's F is that of these kernels, and ends those that have a root.
+    pub(super) fn pursue_and_settle<K: Known>(
+        &mut self,
+        pixels: &mut [Pixel<K>],
+        kernels: u32,
+        sight: &K::Sight,
+    ) {
+        let mut ended = std::mem::take(&mut self.memory.ended);
+        self.pursue(pixels, kernels, sight, &mut ended);
+        for ended in ended.drain(..) {
+            self.settle(ended, kernels);
+        }
+        self.memory.ended = ended;
+    }
+
+    /// Ends a ray, or searches it where the kernels of this number hold.
+    pub(super) fn settle(&mut self, Ended { place, end }: Ended, kernels: u32) {
+        match end {
+            End::Hit(hit) => self.end(place, Outcome::Hit(hit)),
+            End::Lost(wanted) => {
+                let (column, row) = (place % self.tile.width(), place / self.tile.width());
+                self.search_one((column, row), wanted, kernels);
+            }
         }
     }
 
@@ -80,9 +130,9 @@ impl Subdivision<'_> {
     fn approach<K: Known>(
         &mut self,
         pixels: &mut [Pixel<K>],
-        kernels: u32,
-        sight: &K::Sight,
+        (kernels, sight): (u32, &K::Sight),
         is_last: bool,
+        ended: &mut Vec<Ended>,
     ) -> usize {
         let Workspace { points, scratch, counters, .. } = &mut *self.workspace;
         let of_part = &self.kernels[kernels as usize];
@@ -90,10 +140,10 @@ impl Subdivision<'_> {
         counters.trace_evaluations += pixels.len() as u64;
         counters.operations += of_part.charge(Kernel::Values, pixels.len());
         let values = points.evaluate(of_part.points(), scratch, 1);
-        let mut lost = Vec::new();
         let mut kept = 0;
         for number in 0..pixels.len() {
             let pixel = &mut pixels[number];
+            let place = pixel.place;
             match K::look(pixel, values[number], sight) {
                 Verdict::Open if !is_last => {
                     if kept < number {
@@ -101,17 +151,14 @@ impl Subdivision<'_> {
                     }
                     kept += 1;
                 }
-                Verdict::Open | Verdict::Lost => lost.push((pixel.place, pixel.wanted)),
+                Verdict::Open | Verdict::Lost | Verdict::Below => {
+                    ended.push(Ended { place, end: End::Lost(pixel.wanted) });
+                }
                 Verdict::Free => {}
                 Verdict::Hit => {
-                    self.outcomes[pixel.place] = Outcome::Hit(Hit { t: pixel.t, bracket: pixel.wanted });
-                    self.memory.open[pixel.place] = false;
+                    ended.push(Ended { place, end: End::Hit(Hit { t: pixel.t, bracket: pixel.wanted }) });
                 }
             }
-        }
-        for (place, wanted) in lost {
-            let (column, row) = (place % self.tile.width(), place / self.tile.width());
-            self.search_one((column, row), wanted, kernels);
         }
         kept
     }

@@ -5,13 +5,14 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use iso_expr::Interval;
+use rustc_hash::FxHashMap;
 
 use super::arcs::Bowed;
 use super::area::Area;
 use super::beam::{Beam, count_in};
 use super::form::{Form, Gradient};
 use super::monotone::Secants;
-use super::pixels::Pixel;
+use super::pixels::{Ended, Pixel};
 use super::rounding::Rounding;
 use crate::certified::Certified;
 use crate::certified::cells::Cell;
@@ -121,6 +122,8 @@ pub(crate) struct Memory {
     slabs: Vec<Slab>,
     pub(super) pixels: Vec<Pixel<Secants>>,
     pub(super) bowed: Vec<Pixel<Bowed>>,
+    /// How rays ended that were pursued.
+    pub(super) ended: Vec<Ended>,
     /// What was found out last of rounding.
     pub(super) rounding: Option<Rounding>,
 }
@@ -134,6 +137,8 @@ pub(in crate::certified) struct Subdivision<'a> {
     pub(super) memory: Memory,
     /// Kernels by number. The first hold everywhere.
     pub(super) kernels: Vec<Arc<Kernels>>,
+    /// The kernels of which each of some kernels is the greatest, by number.
+    pub(super) faces: FxHashMap<u32, Vec<u32>>,
     /// How many more boxes may be enclosed.
     work_left: u64,
     least_overlap: f64,
@@ -171,7 +176,17 @@ impl<'a> Subdivision<'a> {
         memory.open.resize(tile.len(), true);
         let kernels = vec![Arc::clone(&certified.kernels)];
         let work_left = WORK_LIMIT * tile.len() as u64;
-        Some(Self { certified, workspace, tile, outcomes, memory, kernels, work_left, least_overlap: 0.0 })
+        Some(Self {
+            certified,
+            workspace,
+            tile,
+            outcomes,
+            memory,
+            kernels,
+            faces: FxHashMap::default(),
+            work_left,
+            least_overlap: 0.0,
+        })
     }
 
     /// Says of every ray how its search ends.
@@ -192,7 +207,7 @@ impl<'a> Subdivision<'a> {
                 self.search_each(&part);
             } else if part.form.is_monotone() {
                 self.follow(&part);
-            } else if !self.follow_bent(&part) {
+            } else if !self.follow_crease(&part) && !self.follow_bent(&part) {
                 self.divide(&part);
             }
         }

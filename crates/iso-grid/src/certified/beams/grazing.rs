@@ -1,0 +1,171 @@
+//! Rays that graze the surface: parts on which F is not monotone along rays, but bends one way.
+
+use std::ops::RangeInclusive;
+
+use glam::DVec3;
+use iso_expr::Interval;
+
+use super::arcs::{Arc, Bowed};
+use super::bend::Bend;
+use super::pixels::{Pixel, Verdict, halves_from};
+use super::subdivision::{Part, Subdivision};
+use crate::{Kernel, Workspace};
+
+/// Second derivatives are asked for beams of so many columns or rows: they say little about larger ones, and smaller ones are not
+/// worth it.
+const SIZES: RangeInclusive<usize> = 4..=16;
+
+/// A beam is cut when more rays are likely to be followed in vain.
+pub(super) const DOUBTFUL: usize = 64;
+
+/// Longer stretches, compared to the beam's width, are cut first.
+const LONG: f64 = 2.5;
+
+/// Blocks of so many columns and rows are first looked at as a whole.
+pub(super) const BLOCK: usize = 4;
+
+impl Subdivision<'_> {
+    /// Follows each ray of a part on which F bends one way, or is monotone and its slope changes little; says whether it did.
+    pub(super) fn follow_bent(&mut self, part: &Part) -> bool {
+        let Some(bend) = self.bend(part) else { return false };
+        let kernels = self.kernels_for(part);
+        let Some(error) = self.error_of_values(part, kernels) else { return false };
+        let arc = Arc::new(&bend, part.form.slope, error, self.tolerance(part));
+        let Some(arc) = arc else { return false };
+        let bend = if arc.sign < 0.0 { bend.negated() } else { bend };
+        let mut pixels = std::mem::take(&mut self.memory.bowed);
+        let count = self.start_bent(part, &bend, &arc, &mut pixels);
+        if let Some(count) = count {
+            self.pursue_and_settle(&mut pixels[..count], kernels, &arc);
+        }
+        self.memory.bowed = pixels;
+        count.is_some()
+    }
+
+    /// F over a part to second order, where that is likely to help.
+    fn bend(&mut self, part: &Part) -> Option<Bend> {
+        if !(self.is_fit(part) && part.form.slope.radius.is_finite()) {
+            return None;
+        }
+        self.kernels(part.kernels).hessians()?;
+        let (t, center) = self.center(part);
+        let jet = self.jet_at(center, part.kernels);
+        self.expand(part, (t, center), jet, part.kernels)
+    }
+
+    /// Whether second derivatives are likely to help with a part.
+    pub(super) fn is_fit(&self, part: &Part) -> bool {
+        let beam = self.beam(part.beam);
+        let size = beam.area.width.max(beam.area.height);
+        part.is_inside && SIZES.contains(&size) && beam.elongation(part.form.reach) <= LONG
+    }
+
+    /// The middle of a part.
+    pub(super) fn center(&self, part: &Part) -> (f64, DVec3) {
+        let (beam, reach) = (self.beam(part.beam), part.form.reach);
+        let t = 0.5 * (reach.start + reach.end);
+        (t, beam.origins.middle + t * beam.directions.middle)
+    }
+
+    /// Finds F and its gradient at a point.
+    pub(super) fn jet_at(&mut self, center: DVec3, kernels: u32) -> [Interval; 4] {
+        let kernels = &self.kernels[kernels as usize];
+        let Workspace { middles, scratch, counters, .. } = &mut *self.workspace;
+        middles.replace(std::iter::once((&center, &center)));
+        middles.evaluate(kernels.gradients(), scratch, 4);
+        counters.box_evaluations += 1;
+        counters.operations += kernels.charge(Kernel::GradientEnclosures, 1);
+        std::array::from_fn(|output| middles.interval(output, 0))
+    }
+
+    /// F by kernels of this number to second order around the middle of a part, where it and its gradient are `jet`.
+    pub(super) fn expand(
+        &mut self,
+        part: &Part,
+        center: (f64, DVec3),
+        jet: [Interval; 4],
+        kernels: u32,
+    ) -> Option<Bend> {
+        let beam = &self.memory.beams[part.beam as usize];
+        let kernels = &self.kernels[kernels as usize];
+        let hessians = kernels.hessians()?;
+        let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
+        let (lo, hi) = beam.bounds_in_space(part.form.reach);
+        boxes.replace(std::iter::once((&lo, &hi)));
+        boxes.evaluate(hessians, scratch, 10);
+        counters.box_evaluations += 1;
+        counters.operations += kernels.charge(Kernel::HessianEnclosures, 1);
+        Bend::new(beam, center, jet, std::array::from_fn(|output| boxes.decorated(output, 0)))
+    }
+
+    /// How far values by kernels of this number may be off all over a part, if that is bounded.
+    pub(super) fn error_of_values(&mut self, part: &Part, kernels: u32) -> Option<f64> {
+        let reach = part.form.reach;
+        let bounds = self.beam(part.beam).bounds(reach, &self.certified.region)?;
+        let rounding = self.rounding_around(kernels, bounds).or_else(|| self.rounding(kernels, bounds))?;
+        Some(rounding.error(self.beam(part.beam), reach))
+    }
+
+    /// How wide the enclosure of a root in a part may be.
+    pub(super) fn tolerance(&self, part: &Part) -> f64 {
+        self.certified.accuracy * part.stretch.start.max(1.0).min(part.stretch.end)
+    }
+
+    /// Puts the rays of a part that are still followed and may have a root there in front of `pixels`, and counts them.
+    fn start_bent(
+        &mut self,
+        part: &Part,
+        bend: &Bend,
+        arc: &Arc,
+        pixels: &mut Vec<Pixel<Bowed>>,
+    ) -> Option<usize> {
+        let beam = &self.memory.beams[part.beam as usize];
+        let area = beam.area;
+        let room = area.width * area.height;
+        if pixels.len() < room {
+            pixels.resize(room, Pixel::default());
+        }
+        let (mut count, mut doubtful) = (0, 0);
+        for block in area.blocks(BLOCK) {
+            if !self.is_open(block) {
+                continue;
+            }
+            let [across, along] = block.radii();
+            let (middle_column, middle_row) = area.offset(block.column, block.row);
+            let middle = (middle_column + across, middle_row + along);
+            let stretch = [part.stretch.start - bend.t, part.stretch.end - bend.t];
+            let all = bend.around(middle, block.radii());
+            if all.sign_between(stretch, arc).is_some() {
+                continue;
+            }
+            for (row, b) in block.rows().zip(halves_from(middle_row)) {
+                for (column, a) in block.columns().zip(halves_from(middle_column)) {
+                    let place = row * self.tile.width() + column;
+                    if !self.memory.open[place] {
+                        continue;
+                    }
+                    let course = bend.at(a, b);
+                    let mut pixel = Pixel::starting(
+                        (place, self.tile.ray(column, row)),
+                        [part.stretch, part.form.reach],
+                        &course,
+                        arc,
+                    );
+                    match pixel.judge(course, arc) {
+                        Verdict::Free | Verdict::Below => continue,
+                        Verdict::Open => {
+                            doubtful += usize::from(course.is_doubtful(pixel.t - bend.t, stretch, arc));
+                            if doubtful > DOUBTFUL {
+                                return None;
+                            }
+                        }
+                        Verdict::Hit | Verdict::Lost => pixel.t = bend.t,
+                    }
+                    pixels[count] = pixel;
+                    count += 1;
+                }
+            }
+        }
+        Some(count)
+    }
+}
