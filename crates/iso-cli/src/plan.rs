@@ -95,7 +95,7 @@ impl PlanReport {
             arguments: lines(plan.arguments(), Axis::name),
             constants: lines(plan.constants(), Given::name),
             kernels: kernels.collect(),
-            kernels_compiled: plan.kernels().iter().filter(|kernel| kernel.taken).count(),
+            kernels_compiled: plan.compiled_ahead().count(),
             passes: lines(plan.passes(), Pass::name),
             passes_skipped: plan.passes().iter().filter(|pass| !pass.taken).count(),
             buffers: lines(plan.buffers(), Buffer::name),

@@ -35,6 +35,7 @@ pub struct Surface {
     gradient_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     rounding_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     hessian_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
+    hessians_for_few_runs: OnceLock<Arc<dyn BoxKernel>>,
     /// Shared by copies.
     cells: Arc<Mutex<Option<CellsOfRegion>>>,
     stop: Stop,
@@ -81,6 +82,11 @@ impl Kernel {
         self != Self::HessianEnclosures || value.operations() <= DIFFERENTIATED_TWICE
     }
 
+    /// Whether it is compiled ahead of its use. What is asked for seldom is interpreted until it was asked for often.
+    pub fn is_compiled_ahead(self) -> bool {
+        self != Self::HessianEnclosures
+    }
+
     /// The kernel's name in reports.
     pub fn name(self) -> &'static str {
         match self {
@@ -115,6 +121,7 @@ impl Surface {
             gradient_boxes: OnceLock::new(),
             rounding_boxes: OnceLock::new(),
             hessian_boxes: OnceLock::new(),
+            hessians_for_few_runs: OnceLock::new(),
             cells: Arc::default(),
             stop: Stop::default(),
         }
@@ -245,11 +252,7 @@ impl Surface {
             Kernel::ValueEnclosures => self.value_enclosures().map(drop),
             Kernel::GradientEnclosures => self.gradient_enclosures().map(drop),
             Kernel::RoundingBounds => self.rounding_bounds().map(drop),
-            Kernel::HessianEnclosures => {
-                // Proofs get by without it.
-                let _ = self.hessian_enclosures();
-                Ok(())
-            }
+            Kernel::HessianEnclosures => self.hessian_enclosures().map(drop),
         }
     }
 
@@ -271,6 +274,14 @@ impl Surface {
     /// When the engine cannot compile it.
     pub fn rounding_bounds(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
         compiled(&self.rounding_boxes, || self.engine.boxes(self.program_of(Kernel::RoundingBounds)))
+    }
+
+    /// The same as [`Surface::hessian_enclosures`], made for few runs.
+    pub(crate) fn hessians_for_few_runs(&self) -> &Arc<dyn BoxKernel> {
+        self.hessians_for_few_runs.get_or_init(|| {
+            let kernel = self.engine.for_few_runs().boxes(self.program_of(Kernel::HessianEnclosures));
+            kernel.expect("an engine for few runs takes any program")
+        })
     }
 
     /// F − C with its [first and second derivatives](Program::with_hessian) over boxes.

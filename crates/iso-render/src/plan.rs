@@ -178,7 +178,7 @@ impl Plan {
         &self.constants
     }
 
-    /// The kernels that are compiled.
+    /// The kernels, and which of them are taken.
     pub fn kernels(&self) -> &[Decision<Kernel>] {
         &self.kernels
     }
@@ -204,13 +204,18 @@ impl Plan {
         self.kernels.iter().any(|decision| decision.taken && gradients.contains(&decision.subject))
     }
 
-    /// Compiles the kernels ahead of their use, so that the time it takes is known.
+    /// The kernels that are compiled ahead of their use.
+    pub fn compiled_ahead(&self) -> impl Iterator<Item = Kernel> {
+        let taken = self.kernels.iter().filter(|kernel| kernel.taken);
+        taken.map(|kernel| kernel.subject).filter(|kernel| kernel.is_compiled_ahead())
+    }
+
+    /// Compiles these kernels, so that the time it takes is known.
     ///
     /// # Errors
     /// When the engine cannot compile one.
     pub fn compile(&self, surface: &Surface) -> Result<(), CompileError> {
-        let taken = self.kernels.iter().filter(|kernel| kernel.taken);
-        taken.map(|kernel| kernel.subject).try_for_each(|kernel| surface.compile(kernel))
+        self.compiled_ahead().try_for_each(|kernel| surface.compile(kernel))
     }
 
     /// Prepares the method for a surface in a region.
@@ -281,9 +286,10 @@ impl Wanted<'_> {
             Kernel::HessianEnclosures if certified && !kernel.pays(self.program) => {
                 (false, "F is too large to be differentiated twice")
             }
-            Kernel::HessianEnclosures if certified => {
-                (true, "where F bends one way along rays, those that graze the surface are decided together")
-            }
+            Kernel::HessianEnclosures if certified => (
+                true,
+                "where F bends one way, rays that graze the surface are decided together; compiled when asked for often",
+            ),
             Kernel::HessianEnclosures => (false, "the method samples"),
         }
     }

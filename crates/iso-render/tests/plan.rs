@@ -57,7 +57,7 @@ fn draw(program: &Program, plan: &Plan) -> (Picture, Vec<Kernel>) {
 }
 
 fn planned(plan: &Plan) -> Vec<Kernel> {
-    plan.kernels().iter().filter(|kernel| kernel.taken).map(|kernel| kernel.subject).collect()
+    plan.compiled_ahead().collect()
 }
 
 fn folded(plan: &Plan) -> Vec<Given> {

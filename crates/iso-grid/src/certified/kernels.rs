@@ -44,8 +44,10 @@ pub(super) struct Formula {
     surface: Arc<Surface>,
     /// The same as native code, if it was asked for often.
     compiled: OnceLock<Arc<Surface>>,
-    /// How many operations may still be interpreted before it is compiled; never to be compiled when that is `u64::MAX`.
-    patience: AtomicU64,
+    /// Before it is compiled.
+    patience: Patience,
+    /// Before the kernel of its second derivatives is compiled, which is seldom asked for.
+    patience_for_hessians: Patience,
     has_branches: bool,
     /// How many operations each kernel takes, counted when first asked for.
     operations: [OnceLock<u64>; 6],
@@ -53,14 +55,49 @@ pub(super) struct Formula {
     faces: OnceLock<Vec<Arc<Formula>>>,
 }
 
+/// How many operations may still be interpreted before something is compiled.
+struct Patience(AtomicU64);
+
+impl Patience {
+    /// As long as something is not asked for often.
+    fn limited() -> Self {
+        Self(AtomicU64::new(OFTEN))
+    }
+
+    /// It is never to be compiled.
+    fn endless() -> Self {
+        Self(AtomicU64::new(u64::MAX))
+    }
+
+    fn is_endless(&self) -> bool {
+        self.0.load(Ordering::Relaxed) == u64::MAX
+    }
+
+    fn is_spent(&self) -> bool {
+        self.0.load(Ordering::Relaxed) == 0
+    }
+
+    /// Notes that so many operations were interpreted; says once that it is enough.
+    fn wear(&self, operations: u64) -> bool {
+        let before = self.0.load(Ordering::Relaxed);
+        if before == u64::MAX || before == 0 {
+            return false;
+        }
+        // It does not matter if threads that come by at once forget each other's operations; one of them takes the last.
+        let after = before.saturating_sub(operations);
+        let is_first = self.0.compare_exchange(before, after, Ordering::Relaxed, Ordering::Relaxed).is_ok();
+        after == 0 && is_first
+    }
+}
+
 impl Formula {
-    fn new(surface: Surface, patience: u64) -> Self {
+    fn new(surface: Surface, patience: Patience) -> Self {
         let has_branches = surface.program().has_branches();
-        let patience = AtomicU64::new(patience);
         Self {
             surface: Arc::new(surface),
             compiled: OnceLock::new(),
             patience,
+            patience_for_hessians: Patience::limited(),
             has_branches,
             operations: Default::default(),
             faces: OnceLock::new(),
@@ -72,21 +109,26 @@ impl Formula {
         self.compiled.get().unwrap_or(&self.surface)
     }
 
-    /// Notes that so many operations were interpreted.
-    fn wear(&self, operations: u64) {
-        let before = self.patience.load(Ordering::Relaxed);
-        if before == u64::MAX || before == 0 {
-            return;
-        }
-        // It does not matter if threads that come by at once forget each other's operations; one of them takes the last.
-        let after = before.saturating_sub(operations);
-        let is_first =
-            self.patience.compare_exchange(before, after, Ordering::Relaxed, Ordering::Relaxed).is_ok();
-        if after == 0 && is_first {
+    /// Notes that so many operations of a kernel were asked for.
+    fn wear(&self, kernel: Kernel, operations: u64) {
+        if self.patience.wear(operations) {
             let surface = self.surface.compiled_for_many_runs();
             if Kernel::OF_PROOFS.iter().all(|kernel| surface.compile(*kernel).is_ok()) {
                 self.compiled.get_or_init(|| Arc::new(surface));
+                self.compile_hessians();
             }
+        }
+        if kernel == Kernel::HessianEnclosures && self.patience_for_hessians.wear(operations) {
+            self.compile_hessians();
+        }
+    }
+
+    /// Compiles the kernel of second derivatives if it was asked for often, and all others are compiled.
+    fn compile_hessians(&self) {
+        let is_native = self.compiled.get().is_some() || self.patience.is_endless();
+        if is_native && self.patience_for_hessians.is_spent() {
+            // Where it cannot be compiled it stays interpreted.
+            let _ = self.surface().compile(Kernel::HessianEnclosures);
         }
     }
 }
@@ -109,7 +151,7 @@ impl Kernels {
     /// When the engine cannot compile one.
     pub(super) fn of(surface: &Surface) -> Result<Self, CompileError> {
         Kernel::OF_PROOFS.iter().try_for_each(|kernel| surface.compile(*kernel))?;
-        let formula = Arc::new(Formula::new(surface.clone(), u64::MAX));
+        let formula = Arc::new(Formula::new(surface.clone(), Patience::endless()));
         Ok(Self { formula, domain: [Interval::ENTIRE; 3] })
     }
 
@@ -117,7 +159,7 @@ impl Kernels {
     /// compiling takes longer than they run.
     pub(super) fn shortened(&self, domain: Bounds) -> Option<Self> {
         let surface = self.formula.surface.shortened(domain)?;
-        Some(Self { formula: Arc::new(Formula::new(surface, u64::MAX)), domain })
+        Some(Self { formula: Arc::new(Formula::new(surface, Patience::endless())), domain })
     }
 
     /// The same for what a small formula comes to: in many places it is one of `formulas`, or becomes one, and is compiled when it
@@ -146,7 +188,8 @@ impl Kernels {
         let mut formulas = formulas.lock().unwrap_or_else(PoisonError::into_inner);
         let known = formulas.iter().find(|formula| *formula.surface.program() == program);
         known.map(Arc::clone).unwrap_or_else(|| {
-            let formula = Arc::new(Formula::new(self.formula.surface.reduced_to(program), OFTEN));
+            let formula =
+                Arc::new(Formula::new(self.formula.surface.reduced_to(program), Patience::limited()));
             formulas.push(Arc::clone(&formula));
             formula
         })
@@ -177,7 +220,7 @@ impl Kernels {
     /// Notes that a kernel is asked for so many points or boxes, and says how many operations that takes.
     pub(super) fn charge(&self, kernel: Kernel, count: usize) -> u64 {
         let operations = count as u64 * self.operations(kernel);
-        self.formula.wear(operations);
+        self.formula.wear(kernel, operations);
         operations
     }
 
@@ -207,8 +250,13 @@ impl Kernels {
 
     /// F with its first and second derivatives over boxes, where that pays.
     pub(super) fn hessians(&self) -> Option<&dyn BoxKernel> {
-        let pays = Kernel::HessianEnclosures.pays(self.program());
-        pays.then(|| self.formula.surface().hessian_enclosures().ok())?.map(|kernel| &**kernel)
+        let kernel = Kernel::HessianEnclosures;
+        if !kernel.pays(self.program()) {
+            return None;
+        }
+        let surface = self.formula.surface();
+        let compiled = surface.is_compiled(kernel).then(|| surface.hessian_enclosures().ok()).flatten();
+        Some(compiled.map_or_else(|| &**self.formula.surface.hessians_for_few_runs(), |kernel| &**kernel))
     }
 
     /// The corners of the box on which they hold.
