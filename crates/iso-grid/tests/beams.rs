@@ -8,7 +8,7 @@ use iso_expr::{Ast, Interpreter, Program};
 use iso_grid::{Certified, Hit, Outcome, Raster, Ray, Region, Span, Surface, Tile, Tracer, Workspace};
 
 /// Formulas, half sides of their regions, and what they are tried for.
-const SCENES: [(&str, f64, &str); 20] = [
+const SCENES: [(&str, f64, &str); 29] = [
     ("(x^2+y^2-1)^2 + 4z^2 + 0.5x - 0.2", 1.5, "a classic"),
     ("x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8", 2.6, "parts in front of each other"),
     ("sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)", 5.0, "cut by the region's faces"),
@@ -29,6 +29,15 @@ const SCENES: [(&str, f64, &str); 20] = [
     ("max(0, x^2+y^2+z^2-1)", 1.5, "a plateau"),
     (BALLS, 1.6, "a union of balls"),
     (BOX, 1.6, "a rounded box with a hole, smoothly blended with a ball"),
+    ("(x^2+2.25y^2+z^2-1)^3 - x^2 z^3 - 0.1125y^2 z^3", 1.5, "a heart, flat along a curve"),
+    ("3.5 - 1/((x-0.9)^2+y^2+z^2) - 1/((x+0.9)^2+y^2+z^2) - 1/(x^2+(y-0.8)^2+z^2)", 2.2, "poles inside"),
+    ("max(sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x), x^2+y^2+z^2-9)", 3.2, "curved edges"),
+    ("max(x^2+y^2+z^2-1, x+y-0.4, 0.2-x-y, z-0.5)", 1.5, "a slice with sharp edges"),
+    ("max(x-0.5, y-0.6, z-0.4, -x-y-z-1)", 1.8, "a tetrahedron"),
+    ("max(x^2+y^2+z^2-1, 0.5-(x+y)^2-z^2, 0.1-y^2-(x-z)^2)", 1.5, "a ball with two bores"),
+    ("max(x^2+y^2+z^2-1, sin(9x)/3+sin(9y)/3+z, cos(11x)/4-y)", 1.3, "edges of wavy faces"),
+    ("max(x^6+y^6+z^6-0.5, exp(3x)-4+y^3, exp(-4z)-3-x y)", 1.3, "edges of faces that bend more and more"),
+    ("max(z-x^2-y^2, x^2+y^2-z-0.01)", 1.2, "a thin bowl, edges at the region's faces alone"),
 ];
 
 /// Of six balls and a slab, few count anywhere.

@@ -1,7 +1,7 @@
 use super::reference::assert_same;
 use super::*;
-use crate::Ast;
 use crate::random::Random;
+use crate::{Ast, Engine, Interpreter, Scratch};
 
 fn polynomial() -> Program {
     let mut program = Program::new();
@@ -102,4 +102,31 @@ fn the_gradient_of_a_polynomial_is_minimal() {
     let expected = "v1 = x ^ 4\nv2 = x ^ 3\nv3 = 4 * v2\nv4 = y ^ 3\nv5 = y ^ 2\nv6 = 5 * v4\nv7 = v1 - v6\n\
                     v8 = -15 * v5\nF = v7\n∂F/∂x = v3\n∂F/∂y = v8\n∂F/∂z = 0\n";
     assert_eq!(program.with_gradient().simplified().to_string(), expected);
+}
+
+#[test]
+fn second_derivatives_are_those_of_calculus() {
+    let formula = Ast::parse("x^2 y + 3y z^2 + exp(x) - sin(y z)").unwrap().lower(&[]).unwrap();
+    let hessian = formula.minus_level(0.0).with_hessian();
+    let kernel = Interpreter.point(&hessian).unwrap();
+    for [x, y, z] in [[0.3_f64, -1.2, 0.7], [-2.0, 0.0, 1.5], [1.0, 4.0, -0.25]] {
+        let mut found = [f64::NAN; 10];
+        kernel.evaluate(&mut Scratch::default(), x, y, z, &mut found);
+        let (sine, cosine) = (y * z).sin_cos();
+        let expected = [
+            x * x * y + 3.0 * y * z * z + x.exp() - sine,
+            2.0 * x * y + x.exp(),
+            x * x + 3.0 * z * z - z * cosine,
+            6.0 * y * z - y * cosine,
+            2.0 * y + x.exp(),
+            2.0 * x,
+            0.0,
+            z * z * sine,
+            6.0 * z - cosine + y * z * sine,
+            6.0 * y + y * y * sine,
+        ];
+        for (place, (found, expected)) in found.into_iter().zip(expected).enumerate() {
+            assert!((found - expected).abs() < 1e-13 * (1.0 + expected.abs()), "output {place}: {found}");
+        }
+    }
 }

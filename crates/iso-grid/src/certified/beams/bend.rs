@@ -188,3 +188,114 @@ fn curvature(beam: &Beam, hessian: [[Interval; 3]; 3]) -> Interval {
     }
     sum
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use iso_expr::random::Random;
+    use iso_expr::{Ast, Interpreter, Scratch};
+
+    use super::*;
+    use crate::batch::BoxBatch;
+    use crate::certified::beams::area::Area;
+    use crate::{Raster, Span, Surface, Tile};
+
+    const FORMULAS: [&str; 5] = [
+        "x^2 + y^2 + z^2 - 1",
+        "x^4 - 5x^2 + y^4 - 5y^2 + z^4 - 5z^2 + 11.8",
+        "sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)",
+        "exp(-x^2 - y z) + x/(4 + z)",
+        "(x^2 + 2.25y^2 + z^2 - 1)^3 - x^2 z^3 - 0.1125y^2 z^3",
+    ];
+
+    struct Kernels {
+        surface: Surface,
+        boxes: BoxBatch,
+        scratch: Scratch,
+    }
+
+    impl Kernels {
+        /// F with its derivatives over a box.
+        fn over(&mut self, lo: DVec3, hi: DVec3) -> [Decorated; 10] {
+            self.boxes.replace(std::iter::once((&lo, &hi)));
+            let kernel = &**self.surface.hessian_enclosures().unwrap();
+            self.boxes.evaluate(kernel, &mut self.scratch, 10);
+            std::array::from_fn(|output| self.boxes.decorated(output, 0))
+        }
+    }
+
+    fn vector(random: &mut Random) -> DVec3 {
+        DVec3::from_array([(); 3].map(|()| random.between(-1.0, 1.0)))
+    }
+
+    /// A raster of pixels of any size, and a part of it.
+    fn tile(random: &mut Random, raster: &mut Option<Raster>) -> Area {
+        let (eye, forward, up) = (vector(random), vector(random).normalize(), vector(random));
+        let right = 10f64.powf(random.between(-4.0, -1.5)) * forward.cross(up).normalize();
+        let down = forward.cross(right);
+        *raster = Some(if random.below(2) == 0 {
+            Raster::Parallel { middle: eye, right, down, direction: forward }
+        } else {
+            Raster::Spreading { eye, forward, right, down }
+        });
+        let side = 1 + random.below(16);
+        Area { column: random.below(9), row: random.below(9), width: side, height: 1 + side / 2 }
+    }
+
+    #[test]
+    fn every_ray_is_as_its_beam_says() {
+        let mut random = Random::new(11);
+        let mut bounded = 0;
+        for round in 0..600 {
+            let program = Ast::parse(FORMULAS[round % FORMULAS.len()]).unwrap().lower(&[]).unwrap();
+            let surface = Surface::new(Arc::new(Interpreter), program.minus_level(0.0));
+            let mut kernels = Kernels { surface, boxes: BoxBatch::default(), scratch: Scratch::default() };
+            let mut raster = None;
+            let area = tile(&mut random, &mut raster);
+            let raster = raster.unwrap();
+            let tile = Tile::of(&raster, [-12.5, -12.5], 25, 25);
+            let beam = Beam::new(&tile, area);
+            let start = random.between(0.1, 1.0);
+            let reach = Span { start, end: start + 10f64.powf(random.between(-4.0, -0.7)) };
+            let t = 0.5 * (reach.start + reach.end);
+            let center = beam.origins.middle + t * beam.directions.middle;
+            let [value, x, y, z, ..] = kernels.over(center, center).map(|found| found.interval);
+            let (lo, hi) = beam.bounds_in_space(reach);
+            let Some(bend) = Bend::new(&beam, (t, center), [value, x, y, z], kernels.over(lo, hi)) else {
+                continue;
+            };
+            bounded += 1;
+            for (row, column) in area.rows().flat_map(|row| area.columns().map(move |column| (row, column))) {
+                let ray = tile.ray(column, row);
+                let (a, b) = area.offset(column, row);
+                let along = |found: [Interval; 3]| {
+                    let products =
+                        [0, 1, 2].map(|axis| found[axis].times(Interval::point(ray.direction[axis])));
+                    products[0].plus(products[1]).plus(products[2])
+                };
+                let at = |kernels: &mut Kernels, t: f64| {
+                    let point = ray.origin + t * ray.direction;
+                    let off = 4.0 * f64::EPSILON * (point.abs() + DVec3::splat(t));
+                    kernels.over(point - off, point + off).map(|found| found.interval)
+                };
+                let [value, x, y, z, ..] = at(&mut kernels, t);
+                let slope = along([x, y, z]);
+                let course = bend.at(a, b);
+                let around = bend.around((0.0, 0.0), beam.radii);
+                for (course, which) in [(course, "ray"), (around, "beam")] {
+                    let is_in = |found: Interval, middle: f64, error: f64| {
+                        found.lo <= middle + error && middle - error <= found.hi
+                    };
+                    assert!(is_in(value, course.value, course.value_error), "{which}: {value}, {course:?}");
+                    assert!(is_in(slope, course.slope, course.slope_error), "{which}: {slope}, {course:?}");
+                }
+                let [.., xx, xy, xz, yy, yz, zz] = at(&mut kernels, random.between(reach.start, reach.end));
+                let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]].map(along);
+                let curvature = along(rows);
+                assert!(curvature.lo <= bend.curvature.hi && bend.curvature.lo <= curvature.hi);
+            }
+        }
+        assert!(bounded > 500, "{bounded} beams");
+    }
+}
