@@ -173,12 +173,17 @@ impl Kernels {
         Some(Self { formula: self.one_of(formulas, program), domain })
     }
 
-    /// Kernels of those of which F is the greatest wherever these hold, if it is a maximum there.
-    pub(super) fn faces(&self, formulas: &Mutex<Vec<Arc<Formula>>>) -> Vec<Self> {
-        let faces = self.formula.faces.get_or_init(|| {
-            let programs = self.program().greatest_of().unwrap_or_default();
-            programs.into_iter().map(|program| self.one_of(formulas, program)).collect()
-        });
+    /// Kernels of those of which F is the greatest wherever these hold, if it is a maximum there. Some `formulas` are shared, and
+    /// compiled when they are asked for often.
+    pub(super) fn faces(&self, formulas: Option<&Mutex<Vec<Arc<Formula>>>>) -> Vec<Self> {
+        let face = |program| match formulas {
+            Some(formulas) => self.one_of(formulas, program),
+            None => Arc::new(Formula::new(self.formula.surface.reduced_to(program), Patience::endless())),
+        };
+        let faces = self
+            .formula
+            .faces
+            .get_or_init(|| self.program().greatest_of().unwrap_or_default().into_iter().map(face).collect());
         faces.iter().map(|face| Self { formula: Arc::clone(face), domain: self.domain }).collect()
     }
 

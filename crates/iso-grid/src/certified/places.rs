@@ -96,7 +96,8 @@ impl Places {
 
     /// Kernels of those of which F is the greatest wherever some kernels hold, if it is a maximum there.
     pub(super) fn faces(&self, kernels: &Kernels) -> Vec<Arc<Kernels>> {
-        kernels.faces(&self.formulas).into_iter().map(Arc::new).collect()
+        let formulas = self.whole.are_small().then_some(&self.formulas);
+        kernels.faces(formulas).into_iter().map(Arc::new).collect()
     }
 
     /// The smallest place that a box lies in.
