@@ -93,6 +93,7 @@ impl Iso {
         };
         let tracer = method.prepare(&surface, region)?;
         surface.gradients()?;
+        surface.hessian_enclosures().ok();
         let camera = view.camera()?;
         let shading = Shading::new(&camera, false);
         Ok(Self { surface, method, tracer, camera, shading, view, picture: None })

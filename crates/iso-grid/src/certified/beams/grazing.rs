@@ -15,6 +15,13 @@ use crate::{Kernel, Workspace};
 /// worth it.
 const SIZES: RangeInclusive<usize> = 4..=16;
 
+/// How many powers of two there are up to the largest of these sizes, 1 included.
+const CLASSES: usize = SIZES.end().ilog2() as usize + 1;
+
+/// After so many attempts in a tile that helped less often than once in so many, no more are made.
+const ENOUGH: u32 = 6;
+const SELDOM: u32 = 2;
+
 /// A beam is cut when more rays are likely to be followed in vain.
 pub(super) const DOUBTFUL: usize = 64;
 
@@ -24,14 +31,45 @@ const LONG: f64 = 2.5;
 /// Blocks of so many columns and rows are first looked at as a whole.
 pub(super) const BLOCK: usize = 4;
 
+/// How often second derivatives were asked for in a tile, and how often they helped, for beams up to each power of two.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Attempts {
+    made: [u32; CLASSES],
+    helped: [u32; CLASSES],
+}
+
+impl Attempts {
+    fn class(size: usize) -> usize {
+        size.next_power_of_two().trailing_zeros() as usize
+    }
+
+    /// Whether they hardly ever helped with beams of such a size.
+    fn are_vain(&self, size: usize) -> bool {
+        let class = Self::class(size);
+        self.made[class] >= ENOUGH && SELDOM * self.helped[class] < self.made[class]
+    }
+
+    fn note(&mut self, size: usize, helped: bool) {
+        let class = Self::class(size);
+        self.made[class] += 1;
+        self.helped[class] += u32::from(helped);
+    }
+}
+
 impl Subdivision<'_> {
     /// Follows each ray of a part on which F bends one way, or is monotone and its slope changes little; says whether it did.
     pub(super) fn follow_bent(&mut self, part: &Part) -> bool {
-        let Some(bend) = self.bend(part) else { return false };
+        let size = self.size(part);
+        if !self.is_fit(part) || self.memory.attempts.are_vain(size) {
+            return false;
+        }
         let kernels = self.kernels_for(part);
-        let Some(error) = self.error_of_values(part, kernels) else { return false };
-        let arc = Arc::new(&bend, part.form.slope, error, self.tolerance(part));
-        let Some(arc) = arc else { return false };
+        let found = self.bend(part).and_then(|bend| {
+            let error = self.error_of_values(part, kernels)?;
+            Some((bend, Arc::new(&bend, part.form.slope, error, self.tolerance(part))?))
+        });
+        self.memory.attempts.note(size, found.is_some());
+        let Some((bend, arc)) = found else { return false };
         let bend = if arc.sign < 0.0 { bend.negated() } else { bend };
         let mut pixels = std::mem::take(&mut self.memory.bowed);
         let count = self.start_bent(part, &bend, &arc, &mut pixels);
@@ -44,7 +82,7 @@ impl Subdivision<'_> {
 
     /// F over a part to second order, where that is likely to help.
     fn bend(&mut self, part: &Part) -> Option<Bend> {
-        if !(self.is_fit(part) && part.form.slope.radius.is_finite()) {
+        if !part.form.slope.radius.is_finite() {
             return None;
         }
         self.kernels(part.kernels).hessians()?;
@@ -55,9 +93,14 @@ impl Subdivision<'_> {
 
     /// Whether second derivatives are likely to help with a part.
     pub(super) fn is_fit(&self, part: &Part) -> bool {
-        let beam = self.beam(part.beam);
-        let size = beam.area.width.max(beam.area.height);
-        part.is_inside && SIZES.contains(&size) && beam.elongation(part.form.reach) <= LONG
+        let elongation = self.beam(part.beam).elongation(part.form.reach);
+        part.is_inside && SIZES.contains(&self.size(part)) && elongation <= LONG
+    }
+
+    /// How many columns or rows the beam of a part has.
+    fn size(&self, part: &Part) -> usize {
+        let area = self.beam(part.beam).area;
+        area.width.max(area.height)
     }
 
     /// The middle of a part.

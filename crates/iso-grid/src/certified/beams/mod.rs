@@ -1,13 +1,16 @@
 //! Proofs shared by the rays of a tile.
 //!
 //! A *beam* is a rectangle of the tile's rays. Over a stretch of it F and its gradient are enclosed once for all its
-//! points, and the mean value form, whose excess shrinks with the square of the beam's size, says one of three things:
+//! points, and the mean value form, whose excess shrinks with the square of the beam's size, says one of these things:
 //! - F is nowhere zero: no ray of the beam has a root in the stretch;
 //! - F is monotone along every ray: each ray has at most one root there, and one step of the interval Newton method
 //!   over the beam tells about where. Then each ray's own root is approached by doubles from the beam's linear model. A
 //!   double computed for F, with a bound of its rounding that holds all over the stretch, and the beam's slopes prove and
 //!   enclose the root: no ray needs an interval of its own;
-//! - neither: the stretch is cut, or the beam.
+//! - neither, as where rays graze the surface. If the second derivatives of F, enclosed as well, show that F bends one way along
+//!   every ray, each has at most two roots, and values of F tell them apart or that there are none. If F is the greatest of
+//!   several functions, as at an edge of a body, that is said of each of them, and the ray meets the one that falls to zero last;
+//! - nothing: the stretch is cut, or the beam.
 //!
 //! What is left when beams are small goes to the search along single rays. A ray's stretches are looked at front to back
 //! whatever beams it goes through, so that the first root found is its first root.

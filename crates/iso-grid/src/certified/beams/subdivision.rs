@@ -11,6 +11,7 @@ use super::arcs::Bowed;
 use super::area::Area;
 use super::beam::{Beam, count_in};
 use super::form::{Form, Gradient};
+use super::grazing::Attempts;
 use super::monotone::Secants;
 use super::pixels::{Ended, Pixel};
 use super::rounding::Rounding;
@@ -120,6 +121,7 @@ pub(crate) struct Memory {
     /// The beams that the tile was cut into so far.
     pub(super) beams: Vec<Beam>,
     slabs: Vec<Slab>,
+    pub(super) attempts: Attempts,
     pub(super) pixels: Vec<Pixel<Secants>>,
     pub(super) bowed: Vec<Pixel<Bowed>>,
     /// How rays ended that were pursued.
@@ -172,6 +174,7 @@ impl<'a> Subdivision<'a> {
         memory.beams.clear();
         memory.beams.push(beam);
         memory.rounding = None;
+        memory.attempts = Attempts::default();
         memory.open.clear();
         memory.open.resize(tile.len(), true);
         let kernels = vec![Arc::clone(&certified.kernels)];
