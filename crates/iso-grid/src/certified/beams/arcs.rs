@@ -147,7 +147,7 @@ impl Pixel<Bowed> {
             course.narrow(slopes);
         }
         let t = self.t;
-        let [from, to] = [self.wanted.start - t, self.wanted.end - t];
+        let [from, to] = ways(self.wanted, t);
         let discriminant = course.discriminant(arc);
         let has_root = discriminant > 0.0 || arc.slopes.is_some();
         let mut way = course.way(discriminant, self.side(arc), arc);
@@ -310,6 +310,13 @@ impl Course {
     fn slack(&self, way: f64, arc: &Arc) -> f64 {
         ROUNDING * (self.value.abs() + way * (self.slope.abs() + self.slope_error + way * arc.most))
     }
+}
+
+/// How far the ends of a stretch are from `t`, and a little more, so that rounding leaves nothing out.
+#[inline]
+pub(super) fn ways(stretch: Span, t: f64) -> [f64; 2] {
+    let more = ROUNDING * (t + stretch.end);
+    [stretch.start - t - more, stretch.end - t + more]
 }
 
 /// What no value of `value` + s·w + ½·`curvature`·w² is below for `from` ≤ w ≤ `to`, where s is the first of the slopes for w > 0

@@ -6,7 +6,7 @@
 
 use std::ops::ControlFlow;
 
-use super::arcs::{Arc, Bowed};
+use super::arcs::{Arc, Bowed, ways};
 use super::area::Area;
 use super::bend::{Bend, Course};
 use super::form::{Form, Gradient};
@@ -33,15 +33,16 @@ impl Face {
     /// The sign of the function itself where that is certain on a stretch of a ray on which it is `course`.
     #[inline]
     fn sign(&self, course: &Course, stretch: Span) -> Option<f64> {
-        let ways = [stretch.start - self.bend.t, stretch.end - self.bend.t];
-        course.sign_between(ways, &self.arc).map(|sign| sign * self.arc.sign)
+        course.sign_between(ways(stretch, self.bend.t), &self.arc).map(|sign| sign * self.arc.sign)
     }
 }
 
 /// What a ray is to do next.
 enum Next {
-    /// It has no root in the part, or its root is known.
+    /// It has no root in the part.
     Nothing,
+    /// It meets the body.
+    Meet,
     /// The face of this number may be the one it meets.
     Pursue(usize),
     /// Faces do not tell.
@@ -158,12 +159,12 @@ impl Subdivision<'_> {
                     }
                     match likely(faces, (a, b), part.stretch) {
                         Next::Nothing => {}
-                        Next::Search => lost.push(place),
+                        Next::Search | Next::Meet => lost.push(place),
                         Next::Pursue(number) => {
                             let Face { bend, arc, .. } = &faces[number];
                             let course = bend.at(a, b);
                             let way = course.way_to_root(arc);
-                            let ways = [part.stretch.start - bend.t, part.stretch.end - bend.t];
+                            let ways = ways(part.stretch, bend.t);
                             doubtful += usize::from(course.is_doubtful(way, ways, arc));
                             pixels[number].push(self.on_face(part, &faces[number], place, part.stretch));
                         }
@@ -221,7 +222,7 @@ impl Subdivision<'_> {
     ) {
         match self.next(part, faces, (place, number, hit)) {
             Next::Nothing => {}
-            Next::Pursue(number) if number == faces.len() => {
+            Next::Meet => {
                 self.settle(Ended { place, end: End::Hit(hit) }, part.kernels);
             }
             Next::Pursue(number) => {
@@ -234,7 +235,7 @@ impl Subdivision<'_> {
         }
     }
 
-    /// What is next after a root of the face of a number; the face behind the last is none at all: the root is one of F.
+    /// What is next after a root of the face of a number.
     fn next(&mut self, part: &Part, faces: &[Face], (place, number, hit): (usize, usize, Hit)) -> Next {
         let (column, row) = (place % self.tile.width(), place / self.tile.width());
         let (a, b) = self.beam(part.beam).area.offset(column, row);
@@ -259,7 +260,7 @@ impl Subdivision<'_> {
                 None => return Next::Search,
             }
         }
-        Next::Pursue(faces.len())
+        Next::Meet
     }
 
     /// What kernels of this number compute on a ray.

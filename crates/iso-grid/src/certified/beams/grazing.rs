@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use glam::DVec3;
 use iso_expr::Interval;
 
-use super::arcs::{Arc, Bowed};
+use super::arcs::{Arc, Bowed, ways};
 use super::bend::Bend;
 use super::pixels::{Pixel, Verdict, halves_from};
 use super::subdivision::{Part, Subdivision};
@@ -57,7 +57,7 @@ impl Attempts {
 }
 
 impl Subdivision<'_> {
-    /// Follows each ray of a part on which F bends one way, or is monotone and its slope changes little; says whether it did.
+    /// Follows each ray of a part on which F bends one way; says whether it did.
     pub(super) fn follow_bent(&mut self, part: &Part) -> bool {
         let size = self.size(part);
         if !self.is_fit(part) || self.memory.attempts.are_vain(size) {
@@ -154,7 +154,8 @@ impl Subdivision<'_> {
         self.certified.accuracy * part.stretch.start.max(1.0).min(part.stretch.end)
     }
 
-    /// Puts the rays of a part that are still followed and may have a root there in front of `pixels`, and counts them.
+    /// Puts the rays of a part that are still followed and may have a root there in front of `pixels`, and counts them; `None` when
+    /// too many may be followed in vain.
     fn start_bent(
         &mut self,
         part: &Part,
@@ -176,7 +177,7 @@ impl Subdivision<'_> {
             let [across, along] = block.radii();
             let (middle_column, middle_row) = area.offset(block.column, block.row);
             let middle = (middle_column + across, middle_row + along);
-            let stretch = [part.stretch.start - bend.t, part.stretch.end - bend.t];
+            let stretch = ways(part.stretch, bend.t);
             let all = bend.around(middle, block.radii());
             if all.sign_between(stretch, arc).is_some() {
                 continue;
