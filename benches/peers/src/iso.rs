@@ -93,6 +93,7 @@ impl Iso {
         };
         let tracer = method.prepare(&surface, region)?;
         surface.gradients()?;
+        // Left to the interpreter where it is too large.
         surface.hessian_enclosures().ok();
         let camera = view.camera()?;
         let shading = Shading::new(&camera, false);

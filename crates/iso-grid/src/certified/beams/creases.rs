@@ -12,7 +12,7 @@ use super::bend::{Bend, Course};
 use super::form::{Form, Gradient};
 use super::grazing::{BLOCK, DOUBTFUL};
 use super::pixels::{End, Ended, Pixel, halves_from};
-use super::subdivision::{Part, Subdivision};
+use super::subdivision::{Part, Subdivision, enclose_one};
 use crate::{Hit, Kernel, Span, Workspace};
 
 /// More functions are left to smaller parts, where fewer of them matter.
@@ -53,8 +53,11 @@ impl Subdivision<'_> {
     /// Follows each ray of a part on which F is the greatest of a few functions that each bend upwards or are monotone; says whether
     /// it did.
     pub(super) fn follow_crease(&mut self, part: &Part) -> bool {
+        if !self.is_fit(part) {
+            return false;
+        }
         let numbers = self.faces_of(part.kernels);
-        if numbers.is_empty() || !self.is_fit(part) {
+        if numbers.is_empty() {
             return false;
         }
         let faces = match self.faces(part, &numbers) {
@@ -63,7 +66,7 @@ impl Subdivision<'_> {
         };
         let Some(mut pixels) = self.start_on_faces(part, &faces) else { return false };
         let mut ended = std::mem::take(&mut self.memory.ended);
-        // A ray goes on from face to face, and to none twice.
+        // A ray goes on from face to face, each time farther along; few go back to one.
         for _ in 0..faces.len() {
             for (number, face) in faces.iter().enumerate() {
                 let mut on_face = std::mem::take(&mut pixels[number]);
@@ -129,14 +132,10 @@ impl Subdivision<'_> {
 
     /// The gradients of a function over a part, where it is smooth.
     fn gradient_over(&mut self, part: &Part, kernels: u32) -> Option<Gradient> {
-        let (lo, hi) = self.beam(part.beam).bounds_in_space(part.form.reach);
+        let bounds = self.beam(part.beam).bounds_in_space(part.form.reach);
         let kernels = &self.kernels[kernels as usize];
-        let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
-        boxes.replace(std::iter::once((&lo, &hi)));
-        boxes.evaluate(kernels.gradients(), scratch, 4);
-        counters.box_evaluations += 1;
-        counters.operations += kernels.charge(Kernel::GradientEnclosures, 1);
-        Gradient::new([0, 1, 2, 3].map(|output| boxes.decorated(output, 0)))
+        let kernel = (Kernel::GradientEnclosures, kernels.gradients());
+        Gradient::new(enclose_one(self.workspace, kernels, kernel, bounds))
     }
 
     /// The rays of a part that may have a root, by the face that each is likely to meet; `None` when too many may be followed in
@@ -161,12 +160,10 @@ impl Subdivision<'_> {
                         Next::Nothing => {}
                         Next::Search | Next::Meet => lost.push(place),
                         Next::Pursue(number) => {
-                            let Face { bend, arc, .. } = &faces[number];
-                            let course = bend.at(a, b);
-                            let way = course.way_to_root(arc);
-                            let ways = ways(part.stretch, bend.t);
-                            doubtful += usize::from(course.is_doubtful(way, ways, arc));
-                            pixels[number].push(self.on_face(part, &faces[number], place, part.stretch));
+                            let (pixel, is_doubtful) =
+                                self.on_face(part, &faces[number], place, part.stretch);
+                            doubtful += usize::from(is_doubtful);
+                            pixels[number].push(pixel);
                         }
                     }
                     if doubtful + lost.len() > DOUBTFUL {
@@ -197,9 +194,9 @@ impl Subdivision<'_> {
         are_negative
     }
 
-    /// A ray that is to meet a face in a stretch.
-    fn on_face(&self, part: &Part, face: &Face, place: usize, wanted: Span) -> Pixel<Bowed> {
-        let (column, row) = (place % self.tile.width(), place / self.tile.width());
+    /// A ray that is to meet a face in a stretch, and whether that is doubtful.
+    fn on_face(&self, part: &Part, face: &Face, place: usize, wanted: Span) -> (Pixel<Bowed>, bool) {
+        let (column, row) = self.position(place);
         let (a, b) = self.beam(part.beam).area.offset(column, row);
         let course = face.bend.at(a, b);
         let ray = self.tile.ray(column, row);
@@ -209,7 +206,7 @@ impl Subdivision<'_> {
         if way.is_finite() {
             pixel.t = (pixel.t + way).max(reach.start).min(reach.end);
         }
-        pixel
+        (pixel, course.is_doubtful(way, ways(wanted, face.bend.t), &face.arc))
     }
 
     /// Ends a ray that meets the face of a number, or goes on with it to the next face.
@@ -227,7 +224,7 @@ impl Subdivision<'_> {
             }
             Next::Pursue(number) => {
                 let wanted = Span { start: hit.bracket.start, end: part.stretch.end };
-                pixels[number].push(self.on_face(part, &faces[number], place, wanted));
+                pixels[number].push(self.on_face(part, &faces[number], place, wanted).0);
             }
             Next::Search => {
                 self.settle(Ended { place, end: End::Lost(part.stretch) }, part.kernels);
@@ -237,7 +234,7 @@ impl Subdivision<'_> {
 
     /// What is next after a root of the face of a number.
     fn next(&mut self, part: &Part, faces: &[Face], (place, number, hit): (usize, usize, Hit)) -> Next {
-        let (column, row) = (place % self.tile.width(), place / self.tile.width());
+        let (column, row) = self.position(place);
         let (a, b) = self.beam(part.beam).area.offset(column, row);
         let Span { start, end } = hit.bracket;
         for (other, face) in faces.iter().enumerate() {

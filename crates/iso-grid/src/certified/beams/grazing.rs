@@ -3,13 +3,13 @@
 use std::ops::RangeInclusive;
 
 use glam::DVec3;
-use iso_expr::Interval;
+use iso_expr::{Decorated, Interval};
 
 use super::arcs::{Arc, Bowed, ways};
 use super::bend::Bend;
 use super::pixels::{Pixel, Verdict, halves_from};
-use super::subdivision::{Part, Subdivision};
-use crate::{Kernel, Workspace};
+use super::subdivision::{Part, Subdivision, enclose_one};
+use crate::Kernel;
 
 /// Second derivatives are asked for beams of so many columns or rows: they say little about larger ones, and smaller ones are not
 /// worth it.
@@ -63,13 +63,13 @@ impl Subdivision<'_> {
         if !self.is_fit(part) || self.memory.attempts.are_vain(size) {
             return false;
         }
-        let kernels = self.kernels_for(part);
         let found = self.bend(part).and_then(|bend| {
+            let kernels = self.kernels_for(part);
             let error = self.error_of_values(part, kernels)?;
-            Some((bend, Arc::new(&bend, part.form.slope, error, self.tolerance(part))?))
+            Some((bend, kernels, Arc::new(&bend, part.form.slope, error, self.tolerance(part))?))
         });
         self.memory.attempts.note(size, found.is_some());
-        let Some((bend, arc)) = found else { return false };
+        let Some((bend, kernels, arc)) = found else { return false };
         let bend = if arc.sign < 0.0 { bend.negated() } else { bend };
         let mut pixels = std::mem::take(&mut self.memory.bowed);
         let count = self.start_bent(part, &bend, &arc, &mut pixels);
@@ -113,12 +113,8 @@ impl Subdivision<'_> {
     /// Finds F and its gradient at a point.
     pub(super) fn jet_at(&mut self, center: DVec3, kernels: u32) -> [Interval; 4] {
         let kernels = &self.kernels[kernels as usize];
-        let Workspace { middles, scratch, counters, .. } = &mut *self.workspace;
-        middles.replace(std::iter::once((&center, &center)));
-        middles.evaluate(kernels.gradients(), scratch, 4);
-        counters.box_evaluations += 1;
-        counters.operations += kernels.charge(Kernel::GradientEnclosures, 1);
-        std::array::from_fn(|output| middles.interval(output, 0))
+        let kernel = (Kernel::GradientEnclosures, kernels.gradients());
+        enclose_one(self.workspace, kernels, kernel, (center, center)).map(|found: Decorated| found.interval)
     }
 
     /// F by kernels of this number to second order around the middle of a part, where it and its gradient are `jet`.
@@ -131,14 +127,9 @@ impl Subdivision<'_> {
     ) -> Option<Bend> {
         let beam = &self.memory.beams[part.beam as usize];
         let kernels = &self.kernels[kernels as usize];
-        let hessians = kernels.hessians()?;
-        let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
-        let (lo, hi) = beam.bounds_in_space(part.form.reach);
-        boxes.replace(std::iter::once((&lo, &hi)));
-        boxes.evaluate(hessians, scratch, 10);
-        counters.box_evaluations += 1;
-        counters.operations += kernels.charge(Kernel::HessianEnclosures, 1);
-        Bend::new(beam, center, jet, std::array::from_fn(|output| boxes.decorated(output, 0)))
+        let kernel = (Kernel::HessianEnclosures, kernels.hessians()?);
+        let bounds = beam.bounds_in_space(part.form.reach);
+        Bend::new(beam, center, jet, enclose_one(self.workspace, kernels, kernel, bounds))
     }
 
     /// How far values by kernels of this number may be off all over a part, if that is bounded.

@@ -104,8 +104,7 @@ impl Subdivision<'_> {
         match end {
             End::Hit(hit) => self.end(place, Outcome::Hit(hit)),
             End::Lost(wanted) => {
-                let (column, row) = (place % self.tile.width(), place / self.tile.width());
-                self.search_one((column, row), wanted, kernels);
+                self.search_one(self.position(place), wanted, kernels);
             }
         }
     }

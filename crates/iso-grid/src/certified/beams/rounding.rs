@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 use iso_expr::interval::{round_down, round_up};
-use iso_expr::{Decoration, Interval, Program};
+use iso_expr::{Decorated, Decoration, Interval, Program};
 
 use super::beam::Beam;
 use super::form::ROUNDING;
-use super::subdivision::Subdivision;
-use crate::{Kernel, Span, Workspace};
+use super::subdivision::{Subdivision, enclose_one};
+use crate::{Kernel, Span};
 
 /// How many times its size a box for which rounding is bounded grows at each side, so that it holds neighbours too.
 const AROUND: f64 = 2.0;
@@ -54,20 +54,17 @@ impl Subdivision<'_> {
 
     /// What rounding does to F on a box.
     pub(super) fn rounding(&mut self, kernels: u32, (lo, hi): (DVec3, DVec3)) -> Option<Rounding> {
-        let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
         let of_part = &self.kernels[kernels as usize];
         let sides = outwards(lo, hi);
         let corners = [sides.map(|side| side.lo), sides.map(|side| side.hi)].map(DVec3::from_array);
-        boxes.replace(std::iter::once((&corners[0], &corners[1])));
-        boxes.evaluate(of_part.rounding(), scratch, 5);
-        counters.box_evaluations += 1;
-        counters.operations += of_part.charge(Kernel::RoundingBounds, 1);
-        let decoration = |output| boxes.decorated(output, 0).decoration;
-        let is_known = decoration(0) == Decoration::Common
-            && (1..5).all(|output| decoration(output) >= Decoration::Defined);
-        let magnitude = |output| boxes.interval(output, 0).magnitude();
-        let gradient = DVec3::from_array([2, 3, 4].map(magnitude));
-        let found = Rounding { kernels, lo, hi, of_values: magnitude(1), gradient };
+        let kernel = (Kernel::RoundingBounds, of_part.rounding());
+        let [value, bounds @ ..]: [Decorated; 5] =
+            enclose_one(self.workspace, of_part, kernel, (corners[0], corners[1]));
+        let is_known = value.decoration == Decoration::Common
+            && bounds.iter().all(|bound| bound.decoration >= Decoration::Defined);
+        let [of_values, gradient @ ..] = bounds.map(|bound| bound.interval.magnitude());
+        let gradient = DVec3::from_array(gradient);
+        let found = Rounding { kernels, lo, hi, of_values, gradient };
         let is_bounded = is_known && found.of_values.is_finite() && gradient.is_finite();
         is_bounded.then_some(found)
     }

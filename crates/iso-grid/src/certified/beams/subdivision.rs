@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec3;
-use iso_expr::Interval;
+use iso_expr::{BoxKernel, Decorated, Interval};
 use rustc_hash::FxHashMap;
 
 use super::arcs::Bowed;
@@ -99,6 +99,21 @@ impl Slab {
 struct Behind {
     gradient: Gradient,
     reach: Span,
+}
+
+/// Encloses the `N` outputs of a kernel over the box with these corners.
+pub(super) fn enclose_one<const N: usize>(
+    workspace: &mut Workspace,
+    kernels: &Kernels,
+    (name, kernel): (Kernel, &dyn BoxKernel),
+    (lo, hi): (DVec3, DVec3),
+) -> [Decorated; N] {
+    let Workspace { boxes, scratch, counters, .. } = workspace;
+    boxes.replace(std::iter::once((&lo, &hi)));
+    boxes.evaluate(kernel, scratch, N);
+    counters.box_evaluations += 1;
+    counters.operations += kernels.charge(name, 1);
+    std::array::from_fn(|output| boxes.decorated(output, 0))
 }
 
 /// `count` parts of `span`, equally long.
@@ -235,6 +250,11 @@ impl<'a> Subdivision<'a> {
     /// The kernels of a number.
     pub(super) fn kernels(&self, number: u32) -> &Arc<Kernels> {
         &self.kernels[number as usize]
+    }
+
+    /// The column and the row of a ray of the tile.
+    pub(super) fn position(&self, place: usize) -> (usize, usize) {
+        (place % self.tile.width(), place / self.tile.width())
     }
 
     /// Whether some ray of `area` is still followed.
