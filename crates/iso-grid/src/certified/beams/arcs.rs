@@ -336,3 +336,46 @@ fn least(value: f64, slopes: [f64; 2], curvature: f64, [from, to]: [f64; 2]) -> 
     }
     value + found
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A function that bends as x² does, or its negative, where only roots at which it falls are wanted, or all.
+    fn arc(sign: f64, falls: bool) -> Arc {
+        Arc {
+            t: 1.0,
+            slope_error: 1e-3,
+            sign,
+            curvature: Interval { lo: 1.9, hi: 2.1 },
+            middle: 2.0,
+            spread: 0.1,
+            most: 2.1,
+            twice_least: 3.79,
+            slopes: None,
+            falls,
+            error: 1e-15,
+            tolerance: 1e-12,
+        }
+    }
+
+    /// What follows where the function, or its negative, has a value in the middle and is level there.
+    fn judged(value: f64, arc: &Arc) -> Verdict {
+        let course = Course { value, value_error: 1e-3, slope: 0.0, slope_error: 1e-3 };
+        let [wanted, reach] = [Span { start: 0.9, end: 1.1 }, Span { start: 0.8, end: 1.2 }];
+        let ray = Ray { origin: glam::DVec3::ZERO, direction: glam::DVec3::X };
+        Pixel::starting((0, ray), [wanted, reach], &course, arc).judge(course, arc)
+    }
+
+    #[test]
+    fn what_is_negative_everywhere_does_not_fall_to_zero() {
+        for falls in [false, true] {
+            assert!(matches!(judged(1.0, &arc(1.0, falls)), Verdict::Free));
+        }
+        assert!(matches!(judged(-1.0, &arc(1.0, false)), Verdict::Free));
+        assert!(matches!(judged(-1.0, &arc(1.0, true)), Verdict::Below));
+        // The negative of these.
+        assert!(matches!(judged(1.0, &arc(-1.0, true)), Verdict::Below));
+        assert!(matches!(judged(-1.0, &arc(-1.0, true)), Verdict::Free));
+    }
+}
