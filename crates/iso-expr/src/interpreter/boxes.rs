@@ -78,6 +78,8 @@ fn extend(operation: Operation, lanes: &mut Loop<'_, Decorated>) {
         Operation::Maximum => lanes.binary(extension::maximum),
         Operation::SquareRoot => lanes.unary(extension::square_root),
         Operation::IntegerPower => lanes.binary(extension::integer_power),
+        Operation::Less => lanes.binary(extension::less),
+        Operation::Select => lanes.ternary(extension::select),
         _ => match operation.extension() {
             Extension::Unary(extend) => lanes.unary(extend),
             Extension::Binary(extend) => lanes.binary(extend),

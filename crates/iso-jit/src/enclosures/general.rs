@@ -7,7 +7,9 @@ use iso_expr::{Decorated, Decoration, Operation};
 
 use super::common::quotients;
 use super::rounding::{least_of_four, round_down, signs_of};
-use super::{Enclosure, exponent, greater, known, lesser, negative, nonzero_point, opposite, powers};
+use super::{
+    Enclosure, both, emptied, exponent, greater, known, lesser, negative, nonzero_point, opposite, powers,
+};
 use crate::domain::Sign;
 use crate::lanes::{Mask, Writer};
 
@@ -74,23 +76,10 @@ fn enclosing(
     Enclosure { lo, minus_hi, known: Some(known), range }
 }
 
-/// The empty interval where the mask holds.
-fn emptied(writer: &mut Writer<'_, '_>, mask: Mask, a: Enclosure) -> Enclosure {
-    Enclosure { lo: writer.undefine(mask, a.lo), minus_hi: writer.undefine(mask, a.minus_hi), ..a }
-}
-
 /// The same enclosure, of which nothing is known where the mask holds.
 fn trivial(writer: &mut Writer<'_, '_>, mask: Mask, a: Enclosure) -> Enclosure {
     let known = a.known(writer);
     Enclosure { known: Some(writer.builder.ins().band_not(known, mask.0)), ..a }
-}
-
-/// What is known of both.
-fn both(writer: &mut Writer<'_, '_>, a: Enclosure, b: Enclosure) -> Value {
-    match (a.known, b.known) {
-        (Some(a), Some(b)) => writer.builder.ins().band(a, b),
-        _ => a.known.or(b.known).unwrap_or_else(|| a.known(writer)),
-    }
 }
 
 fn sum(writer: &mut Writer<'_, '_>, a: Enclosure, b: Enclosure, range: Decorated) -> Enclosure {

@@ -4,13 +4,14 @@
 mod common;
 mod general;
 mod rounding;
+mod steps;
 
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{InstBuilder, Value};
 use iso_expr::{Decorated, Decoration, Operation};
 
 use crate::domain::Sign;
-use crate::lanes::Writer;
+use crate::lanes::{Mask, Writer};
 
 /// The enclosures over two boxes, end by end.
 ///
@@ -94,6 +95,7 @@ pub(crate) fn apply(
             let range = opposite(range);
             return apply(writer, O::Minimum, [negative(a), negative(b), b], range).map(negative);
         }
+        O::Less | O::LessOrEqual | O::Select => return steps::apply(writer, operation, operands, range),
         _ => {}
     }
     // A result is decorated no better than its operands.
@@ -113,6 +115,19 @@ fn nonzero_point(operand: &Enclosure) -> Option<f64> {
 /// The exponent of an integer power.
 fn exponent(operand: &Enclosure) -> u32 {
     operand.range.interval.lo as u32
+}
+
+/// The empty interval where the mask holds.
+fn emptied(writer: &mut Writer<'_, '_>, mask: Mask, a: Enclosure) -> Enclosure {
+    Enclosure { lo: writer.undefine(mask, a.lo), minus_hi: writer.undefine(mask, a.minus_hi), ..a }
+}
+
+/// What is known of both.
+fn both(writer: &mut Writer<'_, '_>, a: Enclosure, b: Enclosure) -> Value {
+    match (a.known, b.known) {
+        (Some(a), Some(b)) => writer.builder.ins().band(a, b),
+        _ => a.known.or(b.known).unwrap_or_else(|| a.known(writer)),
+    }
 }
 
 fn negative(a: Enclosure) -> Enclosure {
