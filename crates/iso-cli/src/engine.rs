@@ -51,6 +51,10 @@ impl Engine for Native {
     fn boxes(&self, program: &Program) -> Result<Arc<dyn BoxKernel>, CompileError> {
         unless_too_large(self.0.boxes(program), || Interpreter.boxes(program))
     }
+
+    fn for_few_runs(&self) -> Arc<dyn Engine> {
+        self.0.for_few_runs()
+    }
 }
 
 fn unless_too_large<K>(

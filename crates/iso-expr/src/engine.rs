@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::{Decorated, Decoration, Interpreter, Program};
+use crate::{Decorated, Decoration, Program};
 
 /// Turns programs into kernels. The interpreter is one engine, native code another.
 pub trait Engine: Send + Sync {
@@ -34,9 +34,7 @@ pub trait Engine: Send + Sync {
 
     /// The engine for programs that run too few times to be worth more preparation than a pass over their nodes. As all
     /// engines agree, no result depends on it.
-    fn for_few_runs(&self) -> Arc<dyn Engine> {
-        Arc::new(Interpreter)
-    }
+    fn for_few_runs(&self) -> Arc<dyn Engine>;
 }
 
 /// Evaluates a program at one point. Immutable, so that threads share it.

@@ -39,6 +39,10 @@ impl Engine for Functions {
     fn boxes(&self, _: &Program) -> Result<Arc<dyn BoxKernel>, CompileError> {
         unreachable!("the paper's methods ask for no boxes")
     }
+
+    fn for_few_runs(&self) -> Arc<dyn Engine> {
+        unreachable!("the paper's methods shorten nothing")
+    }
 }
 
 impl BatchKernel for Functions {

@@ -61,22 +61,11 @@ impl NativeBoxes {
         let interpreted = Interpreter.boxes(program)?;
         Ok(Self { compiled, outputs: program.outputs().len(), reach: domain.reach, interpreted })
     }
-
-    /// Whether the code was made for all of the boxes.
-    fn takes(&self, boxes: Boxes<'_>) -> bool {
-        let mut are_taken = true;
-        for (lo, hi) in boxes.lo.iter().zip(&boxes.hi) {
-            for (lo, hi) in lo.iter().zip(*hi) {
-                are_taken &= Domain::holds(self.reach, *lo, *hi);
-            }
-        }
-        are_taken
-    }
 }
 
 impl BoxKernel for NativeBoxes {
     fn evaluate(&self, scratch: &mut Scratch, boxes: Boxes<'_>, enclosures: Enclosures<'_>) {
-        if !self.takes(boxes) {
+        if !Domain::holds_all(self.reach, boxes) {
             return self.interpreted.evaluate(scratch, boxes, enclosures);
         }
         let Enclosures { lo, hi, decoration } = enclosures;

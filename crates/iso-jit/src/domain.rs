@@ -1,5 +1,6 @@
 //! What is known of a program's values before any box is seen: their enclosures over the largest boxes that a kernel takes.
 
+use iso_expr::engine::Boxes;
 use iso_expr::{Decorated, Decoration, Extension, Interval, Node, Program};
 
 /// Boxes that reach no farther from the origin than some distance, and what that says of a program.
@@ -30,14 +31,28 @@ impl Domain {
         best
     }
 
+    /// The reach of a domain that holds all but unusual boxes.
+    pub(crate) const NEAR: f64 = (1u64 << 16) as f64;
+
+    /// The domain of that reach.
+    pub(crate) fn near(program: &Program) -> Self {
+        Self { reach: Self::NEAR, ranges: ranges(program, Self::NEAR) }
+    }
+
     /// How many values are common.
     fn common(&self) -> usize {
         self.ranges.iter().filter(|range| range.decoration == Decoration::Common).count()
     }
 
-    /// Whether the box side from `lo` to `hi` is not empty and lies inside.
-    pub(crate) fn holds(reach: f64, lo: f64, hi: f64) -> bool {
-        (-reach <= lo) & (lo <= hi) & (hi <= reach)
+    /// Whether none of the boxes is empty, and all lie inside a domain of this reach.
+    pub(crate) fn holds_all(reach: f64, boxes: Boxes<'_>) -> bool {
+        let mut are_inside = true;
+        for (lo, hi) in boxes.lo.iter().zip(&boxes.hi) {
+            for (lo, hi) in lo.iter().zip(*hi) {
+                are_inside &= (-reach <= *lo) & (lo <= hi) & (*hi <= reach);
+            }
+        }
+        are_inside
     }
 }
 
@@ -62,7 +77,7 @@ fn ranges(program: &Program, reach: f64) -> Vec<Decorated> {
 }
 
 /// On which side of zero some numbers are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Sign {
     /// On both, or nothing is known.
     Any,

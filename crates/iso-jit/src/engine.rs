@@ -6,11 +6,13 @@ use std::sync::Arc;
 use cranelift_codegen::Context;
 use iso_expr::{BatchKernel, BoxKernel, CompileError, Engine, PointKernel, Program};
 
+use crate::assembled::Assembler;
 use crate::batch::{BatchBlueprint, NativeBatch};
 use crate::boxes::{BoxBlueprint, NativeBoxes};
 use crate::code::{Blueprint, Compiled};
 use crate::host::Host;
 use crate::listing::{Kind, Listing};
+use crate::pieces::Pieces;
 use crate::point::{FunctionBlueprint, NativeFunction, NativePoint, PointBlueprint};
 
 /// The engine's name on the command line and in reports.
@@ -20,6 +22,7 @@ pub(crate) const NAME: &str = "jit";
 #[derive(Clone)]
 pub struct Jit {
     host: Host,
+    pieces: Arc<Pieces>,
 }
 
 impl Jit {
@@ -28,7 +31,9 @@ impl Jit {
     /// # Errors
     /// When the code generator does not support the machine.
     pub fn new() -> Result<Self, CompileError> {
-        Ok(Self { host: Host::new()? })
+        let host = Host::new()?;
+        let pieces = Arc::new(Pieces::new(host.clone()));
+        Ok(Self { host, pieces })
     }
 
     /// The one output of `program` as a native function.
@@ -96,6 +101,11 @@ impl Engine for Jit {
         let blueprint = BoxBlueprint::new(&program);
         let compiled = self.compile(&program, &blueprint)?;
         Ok(Arc::new(NativeBoxes::new(&blueprint, compiled)?))
+    }
+
+    /// Assembles kernels over boxes from operations that are compiled once, and interprets those over points.
+    fn for_few_runs(&self) -> Arc<dyn Engine> {
+        Arc::new(Assembler { pieces: Arc::clone(&self.pieces) })
     }
 }
 

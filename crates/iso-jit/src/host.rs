@@ -79,6 +79,11 @@ impl Host {
         Ok(if given > limits.largest_with_care { &self.quick } else { &self.careful })
     }
 
+    /// What small kernels are compiled for.
+    pub(crate) fn careful(&self) -> &Arc<dyn TargetIsa> {
+        &self.careful
+    }
+
     /// The machine's name.
     pub(crate) fn name(&self) -> String {
         self.careful.triple().to_string()

@@ -4,12 +4,15 @@
 //! Program ─ Blueprint (point, batch or boxes) → Cranelift's IR ─ compile, link → Code in memory → kernel
 //! ```
 //!
+//! Kernels over boxes that are not worth compiling are assembled from pieces, single operations compiled once for all of them.
+//!
 //! A kernel keeps its own code, which is given back when the last user drops the kernel. Values and enclosures are, bit
 //! for bit, those that the table of operations defines.
 
 // The one crate of the project that is allowed to: it calls the code it made.
 #![allow(unsafe_code)]
 
+mod assembled;
 mod batch;
 mod boxes;
 mod code;
@@ -20,6 +23,7 @@ mod engine;
 mod host;
 mod lanes;
 mod listing;
+mod pieces;
 mod point;
 mod symbols;
 mod trampoline;

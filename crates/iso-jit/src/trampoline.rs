@@ -7,7 +7,7 @@ use iso_expr::interval::sine_and_cosine_by_ends;
 use iso_expr::{Decorated, Decoration, Extension, Interval, Operation};
 
 use crate::elementary;
-use crate::enclosures::{Enclosure, known};
+use crate::enclosures::{Enclosure, decoration_of, known};
 use crate::lanes::Writer;
 use crate::symbols::Calls;
 
@@ -21,13 +21,8 @@ pub(crate) struct Pair {
 
 impl Pair {
     fn get(&self, lane: usize) -> Decorated {
-        let decoration = match self.known[lane] {
-            0b000 => Decoration::Trivial,
-            0b001 => Decoration::Defined,
-            0b011 => Decoration::Continuous,
-            _ => Decoration::Common,
-        };
-        Decorated { interval: Interval { lo: self.lo[lane], hi: -self.minus_hi[lane] }, decoration }
+        let interval = Interval { lo: self.lo[lane], hi: -self.minus_hi[lane] };
+        Decorated { interval, decoration: decoration_of(self.known[lane]) }
     }
 
     /// Whether both enclosures are equal. They are, all through a kernel, where it is given a single box.

@@ -40,6 +40,10 @@ impl Engine for Interpreter {
     fn boxes(&self, program: &Program) -> Result<Arc<dyn BoxKernel>, CompileError> {
         Ok(Arc::new(Boxed::new(Code::new(&program.pruned()))))
     }
+
+    fn for_few_runs(&self) -> Arc<dyn Engine> {
+        Arc::new(*self)
+    }
 }
 
 #[cfg(test)]

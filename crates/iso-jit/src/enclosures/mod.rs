@@ -50,6 +50,16 @@ pub(crate) const fn known(decoration: Decoration) -> u64 {
     (1 << decoration as u64) - 1
 }
 
+/// The decoration that bits stand for.
+pub(crate) const fn decoration_of(known: u64) -> Decoration {
+    match known {
+        0b000 => Decoration::Trivial,
+        0b001 => Decoration::Defined,
+        0b011 => Decoration::Continuous,
+        _ => Decoration::Common,
+    }
+}
+
 /// The decorations that bits stand for, as their numbers.
 pub(crate) fn decoration(writer: &mut Writer<'_, '_>, known: Value) -> Value {
     // Of 0, 1, 3 and 7, less the half and the quarter: 0, 1, 2 and 3.

@@ -1,4 +1,4 @@
-//! What holds of any program over any boxes: native code gives the interpreter's enclosures, ends bit for bit and
+//! What holds of any program over any boxes: native code, compiled or assembled, gives the interpreter's enclosures, ends bit for bit and
 //! decorations.
 
 use iso_expr::engine::{Boxes, Enclosures};
@@ -39,9 +39,11 @@ pub(crate) fn enclosures_agree(jit: &Jit, program: &Program, boxes: &[[Decorated
 }
 
 fn all_agree(jit: &Jit, program: &Program, boxes: &[[Decorated; 3]]) {
-    let native = enclosures(jit, program, boxes);
     let expected = enclosures(&Interpreter, program, boxes);
-    for (place, (native, expected)) in native.iter().zip(&expected).enumerate() {
+    let (compiled, assembled) =
+        (enclosures(jit, program, boxes), enclosures(&*jit.for_few_runs(), program, boxes));
+    let expected = expected.iter().chain(&expected);
+    for (place, (native, expected)) in compiled.iter().chain(&assembled).zip(expected).enumerate() {
         let show = |(lo, hi, decoration): &(u64, u64, Decoration)| {
             format!("[{:e}, {:e}] {decoration:?}", f64::from_bits(*lo), f64::from_bits(*hi))
         };
