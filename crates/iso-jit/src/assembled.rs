@@ -52,16 +52,16 @@ impl Engine for Assembler {
 #[derive(Clone, Copy, Debug)]
 enum Place {
     /// Among those that a run computes.
-    Computed(usize),
+    Computed(u32),
     /// Among the constants.
-    Constant(usize),
+    Constant(u32),
 }
 
 /// One operation.
 struct Step {
     apply: Apply,
     /// Behind all that it reads.
-    result: usize,
+    result: u32,
     operands: [Place; 3],
 }
 
@@ -96,16 +96,16 @@ impl Assembled {
             _ => None,
         });
         let mut functions = pieces.functions(wanted)?.into_iter();
-        let (mut steps, mut constants, mut arguments, mut length) = (Vec::new(), Vec::new(), Vec::new(), 0);
+        let (mut steps, mut constants, mut arguments, mut length) = (Vec::new(), Vec::new(), Vec::new(), 0u32);
         let mut places: Vec<Place> = Vec::with_capacity(program.nodes().len());
         for (node, range) in program.nodes().iter().zip(&ranges) {
             if let Node::Constant(_) = node {
-                places.push(Place::Constant(constants.len()));
+                places.push(Place::Constant(constants.len() as u32));
                 constants.extend(in_memory(*range));
                 continue;
             }
             match node {
-                Node::Variable(axis) => arguments.push((*axis as usize, length)),
+                Node::Variable(axis) => arguments.push((*axis as usize, length as usize)),
                 Node::Apply(_, operands) => {
                     let apply = functions.next().expect("a function for each operation");
                     let operands = operands.map(|operand| places[operand.index()]);
@@ -114,11 +114,12 @@ impl Assembled {
                 Node::Constant(_) => unreachable!("constants are put elsewhere"),
             }
             places.push(Place::Computed(length));
-            length += SIZE;
+            length += SIZE as u32;
         }
         let output = |id: &NodeId| (places[id.index()], Kind::of(ranges[id.index()]));
         let outputs = program.outputs().iter().map(output).collect();
         let (interpreted, _pieces) = (OnceLock::new(), Arc::clone(pieces));
+        let length = length as usize;
         Ok(Self { program, steps, constants, arguments, outputs, length, interpreted, _pieces })
     }
 
@@ -132,10 +133,10 @@ impl Assembled {
             // behind the operands, so that a piece reads nothing that it writes.
             unsafe {
                 let [a, b, c] = operands.map(|place| match place {
-                    Place::Computed(place) => start.add(place).cast_const(),
-                    Place::Constant(place) => constants.add(place),
+                    Place::Computed(place) => start.add(place as usize).cast_const(),
+                    Place::Constant(place) => constants.add(place as usize),
                 });
-                apply(start.add(*result), a, b, c);
+                apply(start.add(*result as usize), a, b, c);
             }
         }
     }
@@ -143,8 +144,8 @@ impl Assembled {
     /// The enclosure of a value over the box in a lane.
     fn enclosure(&self, computed: &[f64], (place, kind): (Place, Kind), lane: usize) -> Decorated {
         let parts = match place {
-            Place::Computed(place) => &computed[place..][..SIZE],
-            Place::Constant(place) => &self.constants[place..][..SIZE],
+            Place::Computed(place) => &computed[place as usize..][..SIZE],
+            Place::Constant(place) => &self.constants[place as usize..][..SIZE],
         };
         let decoration = match kind.is_common {
             true => Decoration::Common,

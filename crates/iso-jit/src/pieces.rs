@@ -1,13 +1,13 @@
 //! Single operations over two boxes as native functions, compiled when first needed and shared by all kernels that are
 //! [assembled](crate::assembled) from them.
 
-use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::{AbiParam, InstBuilder, MemFlagsData, Signature, Value, types};
 use cranelift_frontend::FunctionBuilder;
 use iso_expr::{CompileError, Decorated, Decoration, Interval, Operation};
+use rustc_hash::FxHashMap;
 
 use crate::code::{Blueprint, Compiled};
 use crate::domain::Sign;
@@ -158,7 +158,7 @@ fn access() -> MemFlagsData {
 /// All pieces so far. None is given back before all are.
 pub(crate) struct Pieces {
     host: Host,
-    compiled: Mutex<HashMap<Piece, Compiled<Apply>>>,
+    compiled: Mutex<FxHashMap<Piece, Compiled<Apply>>>,
 }
 
 impl Pieces {

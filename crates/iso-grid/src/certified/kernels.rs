@@ -20,7 +20,7 @@ const INTERPRETING: u64 = 4;
 const SMALL: u64 = 800;
 
 /// After so many operations, interpreted, a formula would better have been compiled at once.
-const OFTEN: u64 = 1 << 20;
+const OFTEN: u64 = 1 << 22;
 
 /// An axis-parallel box.
 pub(super) type Bounds = [Interval; 3];
