@@ -31,7 +31,7 @@ pub(crate) fn native_code() -> Result<Arc<dyn Engine>, Failure> {
     ))
 }
 
-/// Native code, and the interpreter for programs that are too large to compile. As engines agree bit for bit, only time
+/// Native code, and over points the interpreter for programs that are too large to compile. As engines agree bit for bit, only time
 /// tells which of them worked.
 struct Native(Arc<dyn Engine>);
 
@@ -49,7 +49,7 @@ impl Engine for Native {
     }
 
     fn boxes(&self, program: &Program) -> Result<Arc<dyn BoxKernel>, CompileError> {
-        unless_too_large(self.0.boxes(program), || Interpreter.boxes(program))
+        self.0.boxes(program)
     }
 
     fn for_few_runs(&self) -> Arc<dyn Engine> {

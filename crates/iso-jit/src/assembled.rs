@@ -96,7 +96,8 @@ impl Assembled {
             _ => None,
         });
         let mut functions = pieces.functions(wanted)?.into_iter();
-        let (mut steps, mut constants, mut arguments, mut length) = (Vec::new(), Vec::new(), Vec::new(), 0u32);
+        let (mut steps, mut constants, mut arguments, mut length) =
+            (Vec::new(), Vec::new(), Vec::new(), 0u32);
         let mut places: Vec<Place> = Vec::with_capacity(program.nodes().len());
         for (node, range) in program.nodes().iter().zip(&ranges) {
             if let Node::Constant(_) = node {

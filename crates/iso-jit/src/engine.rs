@@ -6,7 +6,7 @@ use std::sync::Arc;
 use cranelift_codegen::Context;
 use iso_expr::{BatchKernel, BoxKernel, CompileError, Engine, PointKernel, Program};
 
-use crate::assembled::Assembler;
+use crate::assembled::{Assembled, Assembler};
 use crate::batch::{BatchBlueprint, NativeBatch};
 use crate::boxes::{BoxBlueprint, NativeBoxes};
 use crate::code::{Blueprint, Compiled};
@@ -99,8 +99,13 @@ impl Engine for Jit {
         // Integer powers stay: an interval's square is narrower than its product with itself.
         let program = program.pruned();
         let blueprint = BoxBlueprint::new(&program);
-        let compiled = self.compile(&program, &blueprint)?;
-        Ok(Arc::new(NativeBoxes::new(&blueprint, compiled)?))
+        match self.compile(&program, &blueprint) {
+            Ok(compiled) => Ok(Arc::new(NativeBoxes::new(&blueprint, compiled)?)),
+            Err(CompileError::TooLarge { .. } | CompileError::FrameTooLarge { .. }) => {
+                Ok(Arc::new(Assembled::new(&self.pieces, program)?))
+            }
+            Err(refusal) => Err(refusal),
+        }
     }
 
     /// Assembles kernels over boxes from operations that are compiled once, and interprets those over points.

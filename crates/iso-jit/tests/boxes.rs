@@ -86,3 +86,12 @@ fn programs_that_spill_agree() {
         enclosures_agree(&jit, &program, &boxes(&mut random, 30));
     }
 }
+
+#[test]
+fn programs_too_large_to_compile_agree() {
+    let (jit, mut random) = (Jit::new().unwrap(), Random::new(6));
+    let boxes = boxes(&mut random, 5);
+    // One has too many values at a time, the other too many operations.
+    enclosures_agree(&jit, &random.wide_program(1_400), &boxes);
+    enclosures_agree(&jit, &random.program(20_000), &boxes);
+}
