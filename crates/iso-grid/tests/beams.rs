@@ -8,7 +8,7 @@ use iso_expr::{Ast, Interpreter, Program};
 use iso_grid::{Certified, Hit, Outcome, Raster, Ray, Region, Span, Surface, Tile, Tracer, Workspace};
 
 /// Formulas, half sides of their regions, and what they are tried for.
-const SCENES: [(&str, f64, &str); 29] = [
+const SCENES: [(&str, f64, &str); 36] = [
     ("(x^2+y^2-1)^2 + 4z^2 + 0.5x - 0.2", 1.5, "a classic"),
     ("x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8", 2.6, "parts in front of each other"),
     ("sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)", 5.0, "cut by the region's faces"),
@@ -38,6 +38,17 @@ const SCENES: [(&str, f64, &str); 29] = [
     ("max(x^2+y^2+z^2-1, sin(9x)/3+sin(9y)/3+z, cos(11x)/4-y)", 1.3, "edges of wavy faces"),
     ("max(x^6+y^6+z^6-0.5, exp(3x)-4+y^3, exp(-4z)-3-x y)", 1.3, "edges of faces that bend more and more"),
     ("max(z-x^2-y^2, x^2+y^2-z-0.01)", 1.2, "a thin bowl, edges at the region's faces alone"),
+    ("min(x^2+y^2+z^2-0.5, (x-0.6)^2+y^2+z^2-0.4, x^2+(y-0.7)^2+z^2-0.3)", 1.5, "seams of balls"),
+    (
+        "min(max(x-0.5,-x-0.5,y-0.5,-y-0.5,z-0.5,-z-0.5), max(x-0.9,-x-0.1,y-0.2,-y-0.9,z-0.3,-z-0.4))",
+        1.5,
+        "boxes",
+    ),
+    ("max(min(x^2+y^2-0.1, x^2+z^2-0.1, y^2+z^2-0.1), x^2+y^2+z^2-1)", 1.2, "crossed bars in a ball"),
+    ("min(max(z, -z, x^2+y^2-1), x^2+y^2+z^2-0.1)", 1.3, "a plate of no thickness around a ball"),
+    ("min(z - sin(9x)sin(9y)/9, x^2+y^2+z^2-0.4, y+0.5)", 1.2, "a ball on wavy ground"),
+    ("min(x^2+y^2-z-0.3, 2-exp(x)-exp(z)+y^2, x^6+y^6+z^6-0.1)", 1.3, "seams of faces that bend both ways"),
+    ("max(min(x+y, z-0.3), min(x-y, -z-0.3), x^2+y^2+z^2-1)", 1.4, "edges and seams that meet"),
 ];
 
 /// Of six balls and a slab, few count anywhere.
@@ -190,6 +201,26 @@ fn every_ray_of_a_tile_ends_as_it_does_alone() {
         }
     }
     assert!(wrong.is_empty(), "{} rays differ:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+/// Along a single ray the nearer of two coinciding faces changes all the time, so that often no more is seen than that F touches
+/// zero. A tile tells the faces apart, each of which changes sign.
+#[test]
+fn tiles_prove_no_less_where_faces_coincide() {
+    let tracer = certified(&read("min(x^2+y^2+z^2-0.5, x^2/2+y^2/2+z^2/2-0.25, z+0.2)"), 1.2);
+    for view in views(1.2, 45, 37) {
+        let alone = alone(&tracer, &view.rays);
+        for outcomes in together(&tracer, &view) {
+            for (number, (a, b)) in outcomes.into_iter().zip(&alone).enumerate() {
+                let is_no_less = is_same(a, *b) || matches!((a, b), (Outcome::Hit(_), Outcome::Touch(_)));
+                assert!(
+                    is_no_less && agree(a, *b) && is_narrow(a),
+                    "{}, ray {number}: {a:?}, {b:?}",
+                    view.name
+                );
+            }
+        }
+    }
 }
 
 #[test]

@@ -13,6 +13,8 @@ mod simplify;
 
 use rustc_hash::FxHashMap;
 
+pub use extreme::Extreme;
+
 use crate::{Constant, Operation};
 
 /// A coordinate axis, and the variable that runs along it.

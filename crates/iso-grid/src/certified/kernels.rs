@@ -5,7 +5,9 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use glam::DVec3;
 use iso_expr::engine::{Boxes, Enclosures};
-use iso_expr::{BatchKernel, BoxKernel, CompileError, Decorated, Decoration, Interval, Program, Scratch};
+use iso_expr::{
+    BatchKernel, BoxKernel, CompileError, Decorated, Decoration, Extreme, Interval, Program, Scratch,
+};
 
 use crate::{Kernel, Surface};
 
@@ -51,8 +53,8 @@ pub(super) struct Formula {
     has_branches: bool,
     /// How many operations each kernel takes, counted when first asked for.
     operations: [OnceLock<u64>; 6],
-    /// Those of which it is the greatest everywhere, found when first asked for; none when it is no maximum.
-    faces: OnceLock<Vec<Arc<Formula>>>,
+    /// Those of which it is the least or the greatest everywhere, found when first asked for; `None` when it is no such thing.
+    faces: OnceLock<Option<(Extreme, Vec<Arc<Formula>>)>>,
 }
 
 /// How many operations may still be interpreted before something is compiled.
@@ -173,18 +175,20 @@ impl Kernels {
         Some(Self { formula: self.one_of(formulas, program), domain })
     }
 
-    /// Kernels of those of which F is the greatest wherever these hold, if it is a maximum there. Some `formulas` are shared, and
-    /// compiled when they are asked for often.
-    pub(super) fn faces(&self, formulas: Option<&Mutex<Vec<Arc<Formula>>>>) -> Vec<Self> {
+    /// Kernels of those of which F is the least or the greatest wherever these hold, if it is a minimum or a maximum there. Some
+    /// `formulas` are shared, and compiled when they are asked for often.
+    pub(super) fn faces(&self, formulas: Option<&Mutex<Vec<Arc<Formula>>>>) -> Option<(Extreme, Vec<Self>)> {
         let face = |program| match formulas {
             Some(formulas) => self.one_of(formulas, program),
             None => Arc::new(Formula::new(self.formula.surface.reduced_to(program), Patience::endless())),
         };
-        let faces = self
-            .formula
-            .faces
-            .get_or_init(|| self.program().greatest_of().unwrap_or_default().into_iter().map(face).collect());
-        faces.iter().map(|face| Self { formula: Arc::clone(face), domain: self.domain }).collect()
+        let faces = self.formula.faces.get_or_init(|| {
+            let (extreme, programs) = self.program().extreme_of()?;
+            Some((extreme, programs.into_iter().map(face).collect()))
+        });
+        let (extreme, faces) = faces.as_ref()?;
+        let kernels = |face: &Arc<Formula>| Self { formula: Arc::clone(face), domain: self.domain };
+        Some((*extreme, faces.iter().map(kernels).collect()))
     }
 
     /// The one of `formulas` with this program, which is put there if need be.

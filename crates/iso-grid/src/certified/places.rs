@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, RwLock};
 
 use glam::DVec3;
-use iso_expr::Interval;
+use iso_expr::{Extreme, Interval};
 use rustc_hash::FxHashMap;
 
 use super::kernels::{Bounds, Formula, Kernels, bounds_between};
@@ -94,10 +94,11 @@ impl Places {
         }
     }
 
-    /// Kernels of those of which F is the greatest wherever some kernels hold, if it is a maximum there.
-    pub(super) fn faces(&self, kernels: &Kernels) -> Vec<Arc<Kernels>> {
+    /// Kernels of those of which F is the least or the greatest wherever some kernels hold, if it is a minimum or a maximum there.
+    pub(super) fn faces(&self, kernels: &Kernels) -> Option<(Extreme, Vec<Arc<Kernels>>)> {
         let formulas = self.whole.are_small().then_some(&self.formulas);
-        kernels.faces(formulas).into_iter().map(Arc::new).collect()
+        let (extreme, faces) = kernels.faces(formulas)?;
+        Some((extreme, faces.into_iter().map(Arc::new).collect()))
     }
 
     /// The smallest place that a box lies in.

@@ -44,12 +44,12 @@ impl Attempts {
     }
 
     /// Whether they hardly ever helped with beams of such a size.
-    fn are_vain(&self, size: usize) -> bool {
+    pub(super) fn are_vain(&self, size: usize) -> bool {
         let class = Self::class(size);
         self.made[class] >= ENOUGH && SELDOM * self.helped[class] < self.made[class]
     }
 
-    fn note(&mut self, size: usize, helped: bool) {
+    pub(super) fn note(&mut self, size: usize, helped: bool) {
         let class = Self::class(size);
         self.made[class] += 1;
         self.helped[class] += u32::from(helped);
@@ -98,7 +98,7 @@ impl Subdivision<'_> {
     }
 
     /// How many columns or rows the beam of a part has.
-    fn size(&self, part: &Part) -> usize {
+    pub(super) fn size(&self, part: &Part) -> usize {
         let area = self.beam(part.beam).area;
         area.width.max(area.height)
     }

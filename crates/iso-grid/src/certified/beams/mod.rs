@@ -20,11 +20,13 @@ mod area;
 mod beam;
 mod bend;
 mod creases;
+mod faces;
 mod form;
 mod grazing;
 mod monotone;
 mod pixels;
 mod rounding;
+mod seams;
 mod spread;
 mod subdivision;
 

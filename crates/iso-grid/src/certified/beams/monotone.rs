@@ -76,7 +76,7 @@ impl Subdivision<'_> {
         let model = form.model(beam);
         if form.is_even() && (is_small || self.most_hit(part, &model)) {
             self.follow_each(part, &model);
-        } else if self.follow_crease(part) {
+        } else if self.follow_edge(part) {
             // Nothing is left to do.
         } else if !is_small {
             self.divide_beam(part);

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec3;
-use iso_expr::{BoxKernel, Decorated, Interval};
+use iso_expr::{BoxKernel, Decorated, Extreme, Interval};
 use rustc_hash::FxHashMap;
 
 use super::arcs::Bowed;
@@ -15,6 +15,7 @@ use super::grazing::Attempts;
 use super::monotone::Secants;
 use super::pixels::{Ended, Pixel};
 use super::rounding::Rounding;
+use super::seams::Approach;
 use crate::certified::Certified;
 use crate::certified::cells::Cell;
 use crate::certified::classify::free_of_zero;
@@ -137,8 +138,10 @@ pub(crate) struct Memory {
     pub(super) beams: Vec<Beam>,
     slabs: Vec<Slab>,
     pub(super) attempts: Attempts,
+    pub(super) attempts_at_edges: Attempts,
     pub(super) pixels: Vec<Pixel<Secants>>,
     pub(super) bowed: Vec<Pixel<Bowed>>,
+    pub(super) approaches: Vec<Approach>,
     /// How rays ended that were pursued.
     pub(super) ended: Vec<Ended>,
     /// What was found out last of rounding.
@@ -154,8 +157,8 @@ pub(in crate::certified) struct Subdivision<'a> {
     pub(super) memory: Memory,
     /// Kernels by number. The first hold everywhere.
     pub(super) kernels: Vec<Arc<Kernels>>,
-    /// The kernels of which each of some kernels is the greatest, by number.
-    pub(super) faces: FxHashMap<u32, Vec<u32>>,
+    /// The kernels of which each of some kernels is the least or the greatest, by number; `None` where it is neither.
+    pub(super) faces: FxHashMap<u32, Option<(Extreme, Vec<u32>)>>,
     /// How many more boxes may be enclosed.
     work_left: u64,
     least_overlap: f64,
@@ -190,6 +193,7 @@ impl<'a> Subdivision<'a> {
         memory.beams.push(beam);
         memory.rounding = None;
         memory.attempts = Attempts::default();
+        memory.attempts_at_edges = Attempts::default();
         memory.open.clear();
         memory.open.resize(tile.len(), true);
         let kernels = vec![Arc::clone(&certified.kernels)];
@@ -225,7 +229,7 @@ impl<'a> Subdivision<'a> {
                 self.search_each(&part);
             } else if part.form.is_monotone() {
                 self.follow(&part);
-            } else if !self.follow_crease(&part) && !self.follow_bent(&part) {
+            } else if !self.follow_edge(&part) && !self.follow_bent(&part) {
                 self.divide(&part);
             }
         }

@@ -1,0 +1,179 @@
+//! Edges of bodies: parts on which F is the least or the greatest of several functions, each smooth by itself.
+//!
+//! A body may be put together by minima and maxima in any order. On a part most of its functions are of one sign, and what is left
+//! of the others is often a minimum or a maximum alone.
+
+use iso_expr::Extreme;
+
+use super::arcs::{Arc, Bowed, ways};
+use super::area::Area;
+use super::bend::{Bend, Course};
+use super::form::{Form, Gradient};
+use super::pixels::Pixel;
+use super::subdivision::{Part, Subdivision, enclose_one};
+use crate::{Kernel, Span};
+
+/// More functions are left to smaller parts, where fewer of them matter.
+const MOST: usize = 4;
+
+/// One of the functions of which F is the least or the greatest, where it may have roots.
+pub(super) struct Face {
+    /// The number of its kernels.
+    pub(super) kernels: u32,
+    /// To second order, or its negative: as `arc` has it.
+    pub(super) bend: Bend,
+    pub(super) arc: Arc,
+    /// What no slope along a ray exceeds.
+    pub(super) steepest: f64,
+}
+
+impl Face {
+    /// The sign of the function itself where that is certain on a stretch of a ray on which it is `course`.
+    #[inline]
+    pub(super) fn sign(&self, course: &Course, stretch: Span) -> Option<f64> {
+        course.sign_between(ways(stretch, self.bend.t), &self.arc).map(|sign| sign * self.arc.sign)
+    }
+}
+
+/// What F, or a function of which it is made, comes to on a part.
+enum Made {
+    /// It is of this sign everywhere.
+    Signed(f64),
+    /// It is zero where the least or the greatest of these is, and of the same sign elsewhere.
+    Of(Extreme, Vec<Face>),
+}
+
+/// The sign that F has where any of its functions has it.
+fn deciding(extreme: Extreme) -> f64 {
+    match extreme {
+        Extreme::Least => -1.0,
+        Extreme::Greatest => 1.0,
+    }
+}
+
+impl Subdivision<'_> {
+    /// Follows each ray of a part on which F is the least or the greatest of a few functions that each bend upwards or are monotone;
+    /// says whether it did.
+    pub(super) fn follow_edge(&mut self, part: &Part) -> bool {
+        if !self.is_fit(part) {
+            return false;
+        }
+        let size = self.size(part);
+        if self.memory.attempts_at_edges.are_vain(size) {
+            return false;
+        }
+        let is_followed = match self.made_of_several(part, part.kernels) {
+            Some(Made::Signed(_)) => true,
+            Some(Made::Of(Extreme::Least, faces)) => self.follow_seam(part, &faces),
+            Some(Made::Of(Extreme::Greatest, faces)) => self.follow_crease(part, &faces),
+            None => false,
+        };
+        self.memory.attempts_at_edges.note(size, is_followed);
+        is_followed
+    }
+
+    /// The numbers of the kernels of which those of a number are the least or the greatest, if they are.
+    fn faces_of(&mut self, kernels: u32) -> Option<(Extreme, Vec<u32>)> {
+        if !self.kernels(kernels).may_be_shortened() {
+            return None;
+        }
+        if let Some(known) = self.faces.get(&kernels) {
+            return known.clone();
+        }
+        let found = self.certified.places.faces(self.kernels(kernels));
+        let found = found
+            .map(|(extreme, faces)| (extreme, faces.into_iter().map(|face| self.number_of(face)).collect()));
+        self.faces.insert(kernels, found.clone());
+        found
+    }
+
+    /// What a minimum or a maximum comes to on a part; `None` if it is neither, or faces of it are not smooth or too many, or both
+    /// minima and maxima are left.
+    fn made_of_several(&mut self, part: &Part, kernels: u32) -> Option<Made> {
+        let (extreme, numbers) = self.faces_of(kernels)?;
+        let (mut faces, mut other) = (Vec::new(), None);
+        for number in numbers {
+            match self.made(part, number) {
+                Some(Made::Signed(sign)) if sign == deciding(extreme) => return Some(Made::Signed(sign)),
+                Some(Made::Signed(_)) => {}
+                Some(Made::Of(of, found)) if of == extreme || found.len() == 1 => faces.extend(found),
+                Some(mixed) if other.is_none() => other = Some(mixed),
+                _ => return None,
+            }
+            if faces.len() > MOST {
+                return None;
+            }
+        }
+        match other {
+            Some(_) if !faces.is_empty() => None,
+            None if faces.is_empty() => Some(Made::Signed(-deciding(extreme))),
+            Some(other) => Some(other),
+            None => Some(Made::Of(extreme, faces)),
+        }
+    }
+
+    /// What a function of which F is made comes to on a part: a face if it is smooth.
+    fn made(&mut self, part: &Part, kernels: u32) -> Option<Made> {
+        let (t, center) = self.center(part);
+        let jet = self.jet_at(center, kernels);
+        if let Some(gradient) = self.gradient_over(part, kernels) {
+            let form = Form::new(self.beam(part.beam), part.form.reach, (t, center), jet[0], &gradient);
+            if let Some(sign) = form.sign() {
+                return Some(Made::Signed(sign));
+            }
+            if let Some(bend) = self.expand(part, (t, center), jet, kernels) {
+                let error = self.error_of_values(part, kernels)?;
+                let arc = Arc::new(&bend, form.slope, error, self.tolerance(part))?.falling()?;
+                let bend = if arc.sign < 0.0 { bend.negated() } else { bend };
+                let face = Face { kernels, bend, arc, steepest: form.slope.magnitude() };
+                return Some(Made::Of(Extreme::Least, vec![face]));
+            }
+        }
+        self.made_of_several(part, kernels)
+    }
+
+    /// The gradients of a function over a part, where it is smooth.
+    fn gradient_over(&mut self, part: &Part, kernels: u32) -> Option<Gradient> {
+        let bounds = self.beam(part.beam).bounds_in_space(part.form.reach);
+        let kernels = &self.kernels[kernels as usize];
+        let kernel = (Kernel::GradientEnclosures, kernels.gradients());
+        Gradient::new(enclose_one(self.workspace, kernels, kernel, bounds))
+    }
+
+    /// A ray that is to meet a face in a stretch, about how far from the middle of the part that is, and whether it is doubtful.
+    pub(super) fn on_face(
+        &self,
+        part: &Part,
+        face: &Face,
+        place: usize,
+        wanted: Span,
+    ) -> (Pixel<Bowed>, f64, bool) {
+        let (column, row) = self.position(place);
+        let (a, b) = self.beam(part.beam).area.offset(column, row);
+        let course = face.bend.at(a, b);
+        let ray = self.tile.ray(column, row);
+        let reach = part.form.reach;
+        let mut pixel = Pixel::starting((place, ray), [wanted, reach], &course, &face.arc);
+        let way = course.way_to_root(&face.arc);
+        if way.is_finite() {
+            pixel.t = (pixel.t + way).max(reach.start).min(reach.end);
+        }
+        (pixel, way, course.is_doubtful(way, ways(wanted, face.bend.t), &face.arc))
+    }
+}
+
+/// Whether no ray of a block of an area has a root in a part.
+pub(super) fn is_free(area: Area, block: Area, part: &Part, (extreme, faces): (Extreme, &[Face])) -> bool {
+    let [across, along] = block.radii();
+    let (column, row) = area.offset(block.column, block.row);
+    let mut have_other_sign = true;
+    for face in faces {
+        let course = face.bend.around((column + across, row + along), block.radii());
+        match face.sign(&course, part.stretch) {
+            Some(sign) if sign == deciding(extreme) => return true,
+            Some(_) => {}
+            None => have_other_sign = false,
+        }
+    }
+    have_other_sign
+}
