@@ -11,6 +11,8 @@ mod rounding;
 mod shorten;
 mod simplify;
 
+use std::hash::{Hash, Hasher};
+
 use rustc_hash::FxHashMap;
 
 pub use extreme::Extreme;
@@ -98,6 +100,14 @@ pub struct Program {
 impl PartialEq for Program {
     fn eq(&self, other: &Self) -> bool {
         self.nodes == other.nodes && self.outputs == other.outputs
+    }
+}
+
+/// As [`PartialEq`] has it.
+impl Hash for Program {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.nodes.hash(state);
+        self.outputs.hash(state);
     }
 }
 

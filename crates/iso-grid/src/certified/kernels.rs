@@ -1,5 +1,6 @@
 //! The kernels that proofs are made of.
 
+use std::hash::BuildHasher;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -8,6 +9,7 @@ use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::{
     BatchKernel, BoxKernel, CompileError, Decorated, Decoration, Extreme, Interval, Program, Scratch,
 };
+use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use crate::{Kernel, Surface};
 
@@ -55,6 +57,28 @@ pub(super) struct Formula {
     operations: [OnceLock<u64>; 6],
     /// Those of which it is the least or the greatest everywhere, found when first asked for; `None` when it is no such thing.
     faces: OnceLock<Option<(Extreme, Vec<Arc<Formula>>)>>,
+}
+
+/// Formulas that are shared wherever F comes to them.
+#[derive(Default)]
+pub(super) struct Formulas {
+    /// By the hashes of their programs.
+    known: Mutex<FxHashMap<u64, Vec<Arc<Formula>>>>,
+}
+
+impl Formulas {
+    /// The one with this program, made if need be.
+    fn one_of(&self, program: Program, make: impl FnOnce(Program) -> Formula) -> Arc<Formula> {
+        // Formulas are only ever put in whole.
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let alike = known.entry(FxBuildHasher.hash_one(&program)).or_default();
+        if let Some(formula) = alike.iter().find(|formula| *formula.surface.program() == program) {
+            return Arc::clone(formula);
+        }
+        let formula = Arc::new(make(program));
+        alike.push(Arc::clone(&formula));
+        formula
+    }
 }
 
 /// How many operations may still be interpreted before something is compiled.
@@ -166,18 +190,14 @@ impl Kernels {
 
     /// The same for what a small formula comes to: in many places it is one of `formulas`, or becomes one, and is compiled when it
     /// is asked for often.
-    pub(super) fn shortened_to_one_of(
-        &self,
-        formulas: &Mutex<Vec<Arc<Formula>>>,
-        domain: Bounds,
-    ) -> Option<Self> {
+    pub(super) fn shortened_to_one_of(&self, formulas: &Formulas, domain: Bounds) -> Option<Self> {
         let program = self.program().shortened(domain)?;
         Some(Self { formula: self.one_of(formulas, program), domain })
     }
 
     /// Kernels of those of which F is the least or the greatest wherever these hold, if it is a minimum or a maximum there. Some
     /// `formulas` are shared, and compiled when they are asked for often.
-    pub(super) fn faces(&self, formulas: Option<&Mutex<Vec<Arc<Formula>>>>) -> Option<(Extreme, Vec<Self>)> {
+    pub(super) fn faces(&self, formulas: Option<&Formulas>) -> Option<(Extreme, Vec<Self>)> {
         let face = |program| match formulas {
             Some(formulas) => self.one_of(formulas, program),
             None => Arc::new(Formula::new(self.formula.surface.reduced_to(program), Patience::endless())),
@@ -191,16 +211,10 @@ impl Kernels {
         Some((*extreme, faces.iter().map(kernels).collect()))
     }
 
-    /// The one of `formulas` with this program, which is put there if need be.
-    fn one_of(&self, formulas: &Mutex<Vec<Arc<Formula>>>, program: Program) -> Arc<Formula> {
-        // Formulas are only ever put in whole.
-        let mut formulas = formulas.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = formulas.iter().find(|formula| *formula.surface.program() == program);
-        known.map(Arc::clone).unwrap_or_else(|| {
-            let formula =
-                Arc::new(Formula::new(self.formula.surface.reduced_to(program), Patience::limited()));
-            formulas.push(Arc::clone(&formula));
-            formula
+    /// The one of `formulas` with this program.
+    fn one_of(&self, formulas: &Formulas, program: Program) -> Arc<Formula> {
+        formulas.one_of(program, |program| {
+            Formula::new(self.formula.surface.reduced_to(program), Patience::limited())
         })
     }
 

@@ -1,13 +1,13 @@
 //! Kernels by place: where a box decides branches of F, what is left of F is kept for all rays that come by.
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, RwLock};
+use std::sync::{Arc, RwLock};
 
 use glam::DVec3;
 use iso_expr::{Extreme, Interval};
 use rustc_hash::FxHashMap;
 
-use super::kernels::{Bounds, Formula, Kernels, bounds_between};
+use super::kernels::{Bounds, Formulas, Kernels, bounds_between};
 use crate::{Kernel, Region};
 
 /// How often the region is halved along each axis at most.
@@ -32,7 +32,7 @@ pub(super) struct Places {
     are_ignored: bool,
     known: RwLock<FxHashMap<Place, Arc<Kernels>>>,
     /// What a small formula comes to in some of them.
-    formulas: Mutex<Vec<Arc<Formula>>>,
+    formulas: Formulas,
     /// How many operations may still be kept.
     room: AtomicU64,
 }
@@ -64,7 +64,7 @@ impl Places {
             extent: region.max() - region.min(),
             are_ignored: false,
             known: RwLock::default(),
-            formulas: Mutex::default(),
+            formulas: Formulas::default(),
             room: AtomicU64::new(ROOM),
         }
     }

@@ -170,3 +170,48 @@ impl Subdivision<'_> {
         self.memory.bowed = pixels;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hit(start: f64, end: f64) -> Hit {
+        Hit { t: 0.5 * (start + end), bracket: Span { start, end } }
+    }
+
+    fn approach(ends: impl IntoIterator<Item = End>) -> Approach {
+        let mut approach = Approach { place: 0, likely: 0, found: Found::Nothing };
+        ends.into_iter().for_each(|end| approach.learn(end));
+        approach
+    }
+
+    #[test]
+    fn other_faces_are_asked_up_to_the_first_root_known() {
+        let stretch = Span { start: 1.0, end: 2.0 };
+        assert_eq!(approach([]).wanted(stretch), stretch);
+        assert_eq!(approach([End::Hit(hit(1.5, 1.6))]).wanted(stretch), Span { start: 1.0, end: 1.6 });
+    }
+
+    #[test]
+    fn the_first_of_two_roots_is_in_front() {
+        for (roots, start, end) in [
+            ([hit(1.5, 1.6), hit(1.2, 1.3)], 1.2, 1.3),
+            ([hit(1.2, 1.3), hit(1.5, 1.6)], 1.2, 1.3),
+            // They may be in any order.
+            ([hit(1.2, 1.4), hit(1.3, 1.5)], 1.2, 1.4),
+            ([hit(1.3, 1.4), hit(1.2, 1.5)], 1.2, 1.4),
+        ] {
+            let Found::Hit(found) = approach(roots.map(End::Hit)).found else { panic!("{roots:?}") };
+            assert_eq!(found.bracket, Span { start, end }, "{roots:?}");
+            assert!(start <= found.t && found.t <= end, "{roots:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_lost_stays_unclear() {
+        let lost = End::Lost(Span { start: 1.0, end: 2.0 });
+        for ends in [[lost, End::Hit(hit(1.2, 1.3))], [End::Hit(hit(1.2, 1.3)), lost]] {
+            assert!(matches!(approach(ends).found, Found::Unclear));
+        }
+    }
+}
