@@ -1,12 +1,12 @@
 //! Kernels over boxes that are assembled from [pieces](crate::pieces), operation by operation, instead of being compiled: for programs that run too
 //! few times to be worth compiling, or are too large for it.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::{
     BatchKernel, BoxKernel, CompileError, Decorated, Decoration, Engine, Interpreter, Interval, Node, NodeId,
-    PointKernel, Program, Scratch,
+    Operation, PointKernel, Program, Scratch,
 };
 
 use crate::domain::Domain;
@@ -37,7 +37,7 @@ impl Engine for Assembler {
     }
 
     fn boxes(&self, program: &Program) -> Result<Arc<dyn BoxKernel>, CompileError> {
-        match Assembled::new(&self.pieces, program.pruned()) {
+        match Assembled::new(&self.pieces, &program.pruned()) {
             Ok(kernel) => Ok(Arc::new(kernel)),
             Err(_) => Interpreter.boxes(program),
         }
@@ -48,36 +48,43 @@ impl Engine for Assembler {
     }
 }
 
-/// Where the enclosures of a value stand, in doubles from the beginning.
+/// Where the enclosures of a value stand: among those that a run computes, or among the constants.
 #[derive(Clone, Copy, Debug)]
-enum Place {
-    /// Among those that a run computes.
-    Computed(u32),
-    /// Among the constants.
-    Constant(u32),
+struct Place(u32);
+
+impl Place {
+    /// Marks constants.
+    const CONSTANT: u32 = 1 << 31;
+
+    /// So many doubles from the beginning.
+    fn start(self) -> usize {
+        (self.0 & !Self::CONSTANT) as usize
+    }
+
+    fn is_constant(self) -> bool {
+        self.0 & Self::CONSTANT != 0
+    }
 }
 
 /// One operation.
 struct Step {
     apply: Apply,
+    operation: Operation,
     /// Behind all that it reads.
-    result: u32,
+    result: Place,
     operands: [Place; 3],
 }
 
 /// A kernel over batches of boxes.
 pub(crate) struct Assembled {
-    program: Program,
     steps: Vec<Step>,
     /// The enclosures of all constants.
     constants: Vec<f64>,
     /// The axis of each argument, and where its enclosures stand.
-    arguments: Vec<(usize, usize)>,
+    arguments: Vec<(usize, Place)>,
     outputs: Vec<(Place, Kind)>,
     /// How many doubles a run computes.
     length: usize,
-    /// For boxes that the pieces were not chosen for: empty, unbounded and huge ones.
-    interpreted: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     /// Keeps the functions of all steps.
     _pieces: Arc<Pieces>,
 }
@@ -87,8 +94,8 @@ impl Assembled {
     ///
     /// # Errors
     /// When a piece cannot be compiled.
-    pub(crate) fn new(pieces: &Arc<Pieces>, program: Program) -> Result<Self, CompileError> {
-        let Domain { ranges, .. } = Domain::near(&program);
+    pub(crate) fn new(pieces: &Arc<Pieces>, program: &Program) -> Result<Self, CompileError> {
+        let Domain { ranges, .. } = Domain::near(program);
         let wanted = program.iter().filter_map(|(id, node)| match node {
             Node::Apply(operation, operands) => {
                 Some(Piece::new(*operation, operands.map(|id| ranges[id.index()]), ranges[id.index()]))
@@ -96,83 +103,92 @@ impl Assembled {
             _ => None,
         });
         let mut functions = pieces.functions(wanted)?.into_iter();
-        let (mut steps, mut constants, mut arguments, mut length) =
-            (Vec::new(), Vec::new(), Vec::new(), 0u32);
+        let mut steps = Vec::with_capacity(program.operations());
+        let (mut constants, mut arguments, mut computed) = (Vec::new(), Vec::new(), 0u32);
         let mut places: Vec<Place> = Vec::with_capacity(program.nodes().len());
         for (node, range) in program.nodes().iter().zip(&ranges) {
-            if let Node::Constant(_) = node {
-                places.push(Place::Constant(constants.len() as u32));
-                constants.extend(in_memory(*range));
-                continue;
-            }
+            let place = match node {
+                Node::Constant(_) => Place(constants.len() as u32 | Place::CONSTANT),
+                _ => Place(computed),
+            };
             match node {
-                Node::Variable(axis) => arguments.push((*axis as usize, length as usize)),
-                Node::Apply(_, operands) => {
+                Node::Constant(_) => constants.extend(in_memory(*range)),
+                Node::Variable(axis) => arguments.push((*axis as usize, place)),
+                Node::Apply(operation, operands) => {
                     let apply = functions.next().expect("a function for each operation");
                     let operands = operands.map(|operand| places[operand.index()]);
-                    steps.push(Step { apply, result: length, operands });
+                    steps.push(Step { apply, operation: *operation, result: place, operands });
                 }
-                Node::Constant(_) => unreachable!("constants are put elsewhere"),
             }
-            places.push(Place::Computed(length));
-            length += SIZE as u32;
+            if !place.is_constant() {
+                computed += SIZE as u32;
+            }
+            places.push(place);
         }
         let output = |id: &NodeId| (places[id.index()], Kind::of(ranges[id.index()]));
         let outputs = program.outputs().iter().map(output).collect();
-        let (interpreted, _pieces) = (OnceLock::new(), Arc::clone(pieces));
-        let length = length as usize;
-        Ok(Self { program, steps, constants, arguments, outputs, length, interpreted, _pieces })
+        let length = computed as usize;
+        Ok(Self { steps, constants, arguments, outputs, length, _pieces: Arc::clone(pieces) })
     }
 
-    /// Computes all values over two boxes, the arguments of which stand where they belong.
+    /// Computes all values over two boxes inside the domain, the arguments of which stand where they belong.
     fn run(&self, computed: &mut [f64]) {
         assert_eq!(computed.len(), self.length, "room for every value");
         let start = computed.as_mut_ptr();
         let constants = self.constants.as_ptr();
-        for Step { apply, result, operands } in &self.steps {
+        for Step { apply, result, operands, .. } in &self.steps {
             // SAFETY: places are inside what they are counted in, and the pieces live as long as the kernel. A result stands
             // behind the operands, so that a piece reads nothing that it writes.
             unsafe {
-                let [a, b, c] = operands.map(|place| match place {
-                    Place::Computed(place) => start.add(place as usize).cast_const(),
-                    Place::Constant(place) => constants.add(place as usize),
+                let [a, b, c] = operands.map(|place| {
+                    let first = if place.is_constant() { constants } else { start.cast_const() };
+                    first.add(place.start())
                 });
-                apply(start.add(*result as usize), a, b, c);
+                apply(start.add(result.start()), a, b, c);
             }
         }
     }
 
-    /// The enclosure of a value over the box in a lane.
-    fn enclosure(&self, computed: &[f64], (place, kind): (Place, Kind), lane: usize) -> Decorated {
-        let parts = match place {
-            Place::Computed(place) => &computed[place as usize..][..SIZE],
-            Place::Constant(place) => &self.constants[place as usize..][..SIZE],
-        };
-        let decoration = match kind.is_common {
-            true => Decoration::Common,
-            false => enclosures::decoration_of(parts[KNOWN + lane].to_bits()),
-        };
-        let interval = Interval { lo: parts[LO + lane], hi: -parts[MINUS_HI + lane] };
-        Decorated { interval, decoration }
+    /// The same over any boxes, empty, unbounded and huge ones included, for which the pieces were not chosen.
+    fn run_anywhere(&self, computed: &mut [f64]) {
+        for Step { operation, result, operands, .. } in &self.steps {
+            for lane in 0..PAIR {
+                let operands = operands.map(|place| decorated(self.parts(computed, place), lane));
+                let enclosure = operation.extension().of(operands);
+                put(&mut computed[result.start()..][..SIZE], lane, enclosure);
+            }
+        }
+    }
+
+    /// The enclosures of a value.
+    fn parts<'a>(&'a self, computed: &'a [f64], place: Place) -> &'a [f64] {
+        let all = if place.is_constant() { &self.constants } else { computed };
+        &all[place.start()..][..SIZE]
     }
 }
 
-/// The same enclosure over both boxes, as it stands in memory.
-fn in_memory(Decorated { interval, decoration }: Decorated) -> [f64; SIZE] {
+/// The enclosure over the box in a lane.
+fn decorated(parts: &[f64], lane: usize) -> Decorated {
+    let interval = Interval { lo: parts[LO + lane], hi: -parts[MINUS_HI + lane] };
+    Decorated { interval, decoration: enclosures::decoration_of(parts[KNOWN + lane].to_bits()) }
+}
+
+/// Puts the enclosure over the box in a lane.
+fn put(parts: &mut [f64], lane: usize, Decorated { interval, decoration }: Decorated) {
+    parts[LO + lane] = interval.lo;
+    parts[MINUS_HI + lane] = -interval.hi;
+    parts[KNOWN + lane] = f64::from_bits(enclosures::known(decoration));
+}
+
+/// The same enclosure over both boxes.
+fn in_memory(enclosure: Decorated) -> [f64; SIZE] {
     let mut parts = [0.0; SIZE];
-    parts[LO..][..PAIR].fill(interval.lo);
-    parts[MINUS_HI..][..PAIR].fill(-interval.hi);
-    parts[KNOWN..][..PAIR].fill(f64::from_bits(enclosures::known(decoration)));
+    (0..PAIR).for_each(|lane| put(&mut parts, lane, enclosure));
     parts
 }
 
 impl BoxKernel for Assembled {
     fn evaluate(&self, scratch: &mut Scratch, boxes: Boxes<'_>, enclosures: Enclosures<'_>) {
-        if !Domain::holds_all(Domain::NEAR, boxes) {
-            let interpreted = self.interpreted.get_or_init(|| Interpreter.boxes(&self.program));
-            let interpreted = interpreted.as_ref().expect("the interpreter takes any program");
-            return interpreted.evaluate(scratch, boxes, enclosures);
-        }
         let Enclosures { lo, hi, decoration } = enclosures;
         let count = boxes.lo[0].len();
         assert_eq!(
@@ -180,24 +196,30 @@ impl BoxKernel for Assembled {
             [self.outputs.len() * count; 3],
             "room for every output over every box"
         );
+        let is_inside = Domain::holds_all(Domain::NEAR, boxes);
         let computed = scratch.values(self.length);
         for first in (0..count).step_by(PAIR) {
             // The last box of an odd number stands in both lanes.
             let lanes = [first, (first + 1).min(count - 1)];
             for &(axis, place) in &self.arguments {
                 for (lane, number) in lanes.into_iter().enumerate() {
-                    // Zeros are made to point inwards.
-                    computed[place + LO + lane] = boxes.lo[axis][number] + 0.0;
-                    computed[place + MINUS_HI + lane] = 0.0 - boxes.hi[axis][number];
+                    let argument = Decorated::argument(boxes.lo[axis][number], boxes.hi[axis][number]);
+                    put(&mut computed[place.start()..][..SIZE], lane, argument);
                 }
             }
-            self.run(computed);
-            for (place, output) in self.outputs.iter().enumerate() {
+            if is_inside {
+                self.run(computed);
+            } else {
+                self.run_anywhere(computed);
+            }
+            for (output, (place, kind)) in self.outputs.iter().enumerate() {
+                let parts = self.parts(computed, *place);
+                let is_common = is_inside && kind.is_common;
                 for (lane, number) in lanes.into_iter().enumerate() {
-                    let enclosure = self.enclosure(computed, *output, lane);
-                    let place = place * count + number;
+                    let enclosure = decorated(parts, lane);
+                    let place = output * count + number;
                     (lo[place], hi[place]) = (enclosure.interval.lo, enclosure.interval.hi);
-                    decoration[place] = enclosure.decoration;
+                    decoration[place] = if is_common { Decoration::Common } else { enclosure.decoration };
                 }
             }
         }

@@ -102,7 +102,7 @@ impl Engine for Jit {
         match self.compile(&program, &blueprint) {
             Ok(compiled) => Ok(Arc::new(NativeBoxes::new(&blueprint, compiled)?)),
             Err(CompileError::TooLarge { .. } | CompileError::FrameTooLarge { .. }) => {
-                Ok(Arc::new(Assembled::new(&self.pieces, program)?))
+                Ok(Arc::new(Assembled::new(&self.pieces, &program)?))
             }
             Err(refusal) => Err(refusal),
         }

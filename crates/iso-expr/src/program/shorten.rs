@@ -56,7 +56,7 @@ impl Program {
         let has_branches = || self.nodes.iter().zip(decisions.iter().zip(&needed)).any(is_open);
         let loses_branches = || self.has_branches() && !has_branches();
         let is_worthwhile = kept as f64 <= WORTHWHILE * self.nodes.len() as f64 || loses_branches();
-        is_worthwhile.then(|| self.rebuilt(&decisions, &needed))
+        is_worthwhile.then(|| self.rebuilt(&decisions, &needed, kept))
     }
 
     /// Whether it holds an operation that a box may decide.
@@ -116,8 +116,8 @@ impl Program {
 
     /// The program with the decided operations replaced, as far as it is needed, and constants folded. Nodes are not compared
     /// with each other and no rules are applied, for this is done for places by the thousand, and takes longer than they run.
-    fn rebuilt(&self, decisions: &[Option<Decision>], needed: &[bool]) -> Self {
-        let mut program = Self::new();
+    fn rebuilt(&self, decisions: &[Option<Decision>], needed: &[bool], count: usize) -> Self {
+        let mut program = Self { nodes: Vec::with_capacity(count), ..Self::new() };
         let mut places = vec![NodeId(0); self.nodes.len()];
         for (index, node) in self.nodes.iter().enumerate() {
             let decision = decisions[index];

@@ -16,8 +16,8 @@ use crate::{Kernel, Surface};
 /// How many boxes are enclosed by one call at most.
 pub(super) const BATCH: usize = 8;
 
-/// About how much longer an interpreted operation takes than one in native code.
-const INTERPRETING: u64 = 4;
+/// About how much longer an operation takes in kernels that are made for few runs.
+const INTERPRETING: u64 = 2;
 
 /// What formulas of no more operations come to in some places is compiled, if it is asked for often enough. Measured: a model of 676
 /// operations is drawn in three quarters of the time with it; one of 997, which comes to too many formulas, takes twice as long.
@@ -228,7 +228,7 @@ impl Kernels {
         self.operations(Kernel::Values) <= SMALL
     }
 
-    /// Whether these, which are interpreted, take less time than `others` as native code. Where `others` are interpreted too the
+    /// Whether these, which are made for few runs, take less time than `others` as native code. Where `others` are not compiled the
     /// answer is the same, so that both engines prove the same enclosures.
     pub(super) fn are_quicker_than(&self, others: &Self) -> bool {
         INTERPRETING * self.operations(Kernel::Values) <= others.operations(Kernel::Values)
