@@ -92,6 +92,7 @@ impl<'a> Formula<'a> {
     /// When an engine cannot compile the formula.
     pub fn entries(&self, discipline: Discipline) -> Result<Vec<Entry<'a>>, CompileError> {
         let (interpreter, jit) = (Interpreter, Jit::new()?);
+        let assembler = jit.for_few_runs();
         let engines: [(&'static str, &dyn Engine); 2] = [("interpreter", &interpreter), ("jit", &jit)];
         let (points, boxes, native) = (self.batch.points(), self.batch.boxes(), self.native);
         let mut entries = Vec::new();
@@ -125,7 +126,7 @@ impl<'a> Formula<'a> {
                     Discipline::Boxes => (self.value, native.boxes),
                     _ => (self.gradient, native.gradient_boxes),
                 };
-                for (name, engine) in engines {
+                for (name, engine) in engines.into_iter().chain([("assembled", &*assembler)]) {
                     entries.push(Entry::new(name, box_kernel(engine.boxes(program)?, self.batch)));
                 }
                 if let Some(rust) = rust {

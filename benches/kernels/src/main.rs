@@ -102,7 +102,8 @@ fn bits(entry: &mut Entry<'_>, discipline: Discipline) -> Vec<u64> {
 }
 
 fn print_heading() {
-    let names = ["interpreter", "JIT", "Rust", "Rust, AVX-512", "JIT / Rust", "interpreter / JIT"];
+    let names =
+        ["interpreter", "assembled", "JIT", "Rust", "Rust, AVX-512", "JIT / Rust", "interpreter / JIT"];
     print!("{:<11}{:<15}", "formula", "kernel");
     names.iter().for_each(|name| print!("{name:>23}"));
     println!();
@@ -112,7 +113,8 @@ fn print_row(formula: &str, discipline: Discipline, measured: &[(&'static str, S
     let samples =
         |name: &str| measured.iter().find(|(engine, _)| *engine == name).map(|(_, samples)| samples);
     let ratio = |a: &str, b: &str| Some(samples(a)?.over(samples(b)?));
-    let columns = ["interpreter", "jit", "rust", "rust avx512"].map(|name| samples(name).cloned());
+    let columns =
+        ["interpreter", "assembled", "jit", "rust", "rust avx512"].map(|name| samples(name).cloned());
     print!("{formula:<11}{:<15}", discipline.name());
     for samples in columns.into_iter().chain([ratio("jit", "rust"), ratio("interpreter", "jit")]) {
         print!("{:>23}", samples.map_or("-".to_owned(), |samples| samples.spread().to_string()));

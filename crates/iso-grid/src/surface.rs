@@ -82,7 +82,7 @@ impl Kernel {
         self != Self::HessianEnclosures || value.operations() <= DIFFERENTIATED_TWICE
     }
 
-    /// Whether it is compiled ahead of its use. What is asked for seldom is interpreted until it was asked for often.
+    /// Whether it is compiled ahead of its use. What is asked for seldom is made for few runs until it was asked for often.
     pub fn is_compiled_ahead(self) -> bool {
         self != Self::HessianEnclosures
     }

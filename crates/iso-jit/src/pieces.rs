@@ -11,6 +11,7 @@ use rustc_hash::FxHashMap;
 
 use crate::code::{Blueprint, Compiled};
 use crate::domain::Sign;
+use crate::elementary;
 use crate::enclosures::{self, Enclosure};
 use crate::host::{self, Host, Limits};
 use crate::lanes::{Lanes, Writer};
@@ -99,6 +100,19 @@ impl Piece {
         Enclosure { lo, minus_hi, known, range: kind.range() }
     }
 
+    /// The sine or the cosine, where this machine has a function for all ends at once.
+    fn wave(
+        writer: &mut Writer<'_, '_>,
+        calls: &mut Calls<'_>,
+        operation: Operation,
+        operand: &Enclosure,
+        range: Decorated,
+    ) -> Option<Enclosure> {
+        elementary::sines_and_cosines()?;
+        let both = Room::new(writer).call_for_both(writer, calls, operand)?;
+        Some(Enclosure { range, ..both[usize::from(operation == Operation::Cos)] })
+    }
+
     /// The operand that the exponent of an integer power is.
     fn exponent(writer: &mut Writer<'_, '_>, exponent: u32) -> Enclosure {
         enclosures::constant(writer, Decorated::argument(exponent.into(), exponent.into()))
@@ -129,7 +143,12 @@ impl Blueprint for Piece {
             };
         }
         let range = self.result.range();
-        let written = enclosures::apply(&mut writer, self.operation, operands, range);
+        let written = match self.operation {
+            Operation::Sin | Operation::Cos => {
+                Self::wave(&mut writer, calls, self.operation, &operands[0], range)
+            }
+            _ => enclosures::apply(&mut writer, self.operation, operands, range),
+        };
         let enclosure = written.unwrap_or_else(|| {
             let operands = &operands[..self.operation.arity()];
             Room::new(&mut writer).call(&mut writer, calls, self.operation, operands, range)

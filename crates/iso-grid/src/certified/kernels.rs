@@ -23,8 +23,9 @@ const INTERPRETING: u64 = 2;
 /// operations is drawn in three quarters of the time with it; one of 997, which comes to too many formulas, takes twice as long.
 const SMALL: u64 = 800;
 
-/// After so many operations, interpreted, a formula would better have been compiled at once.
-const OFTEN: u64 = 1 << 22;
+/// After so many operations by kernels made for few runs, for each of its own operations, a formula would better have been compiled at
+/// once: that takes about a quarter of a millisecond for each, and saves one or two nanoseconds whenever it is asked for.
+const OFTEN: u64 = 1 << 17;
 
 /// An axis-parallel box.
 pub(super) type Bounds = [Interval; 3];
@@ -81,13 +82,13 @@ impl Formulas {
     }
 }
 
-/// How many operations may still be interpreted before something is compiled.
+/// How many operations may still be asked for before something is compiled.
 struct Patience(AtomicU64);
 
 impl Patience {
     /// As long as something is not asked for often.
-    fn limited() -> Self {
-        Self(AtomicU64::new(OFTEN))
+    fn limited(program: &Program) -> Self {
+        Self(AtomicU64::new(OFTEN * program.operations().max(1) as u64))
     }
 
     /// It is never to be compiled.
@@ -103,7 +104,7 @@ impl Patience {
         self.0.load(Ordering::Relaxed) == 0
     }
 
-    /// Notes that so many operations were interpreted; says once that it is enough.
+    /// Notes that so many operations were asked for; says once that it is enough.
     fn wear(&self, operations: u64) -> bool {
         let before = self.0.load(Ordering::Relaxed);
         if before == u64::MAX || before == 0 {
@@ -120,10 +121,10 @@ impl Formula {
     fn new(surface: Surface, patience: Patience) -> Self {
         let has_branches = surface.program().has_branches();
         Self {
+            patience_for_hessians: Patience::limited(surface.program()),
             surface: Arc::new(surface),
             compiled: OnceLock::new(),
             patience,
-            patience_for_hessians: Patience::limited(),
             has_branches,
             operations: Default::default(),
             faces: OnceLock::new(),
@@ -153,7 +154,7 @@ impl Formula {
     fn compile_hessians(&self) {
         let is_native = self.compiled.get().is_some() || self.patience.is_endless();
         if is_native && self.patience_for_hessians.is_spent() {
-            // Where it cannot be compiled it stays interpreted.
+            // Where it cannot be compiled it stays as it is.
             let _ = self.surface().compile(Kernel::HessianEnclosures);
         }
     }
@@ -181,8 +182,8 @@ impl Kernels {
         Ok(Self { formula, domain: [Interval::ENTIRE; 3] })
     }
 
-    /// Shorter ones that hold on `domain`, a part of where these do; `None` where there are none. They are interpreted, for
-    /// compiling takes longer than they run.
+    /// Shorter ones that hold on `domain`, a part of where these do; `None` where there are none. They are made for few
+    /// runs, for compiling takes longer than they run.
     pub(super) fn shortened(&self, domain: Bounds) -> Option<Self> {
         let surface = self.formula.surface.shortened(domain)?;
         Some(Self { formula: Arc::new(Formula::new(surface, Patience::endless())), domain })
@@ -214,7 +215,8 @@ impl Kernels {
     /// The one of `formulas` with this program.
     fn one_of(&self, formulas: &Formulas, program: Program) -> Arc<Formula> {
         formulas.one_of(program, |program| {
-            Formula::new(self.formula.surface.reduced_to(program), Patience::limited())
+            let patience = Patience::limited(&program);
+            Formula::new(self.formula.surface.reduced_to(program), patience)
         })
     }
 
@@ -266,9 +268,15 @@ impl Kernels {
         &**compiled(self.formula.surface().gradient_enclosures())
     }
 
-    /// F, what rounding does to it, and its gradient over boxes.
-    pub(super) fn rounding(&self) -> &dyn BoxKernel {
-        &**compiled(self.formula.surface().rounding_bounds())
+    /// One of the kernels over boxes; `None` for the others, and where it does not pay.
+    pub(super) fn over_boxes(&self, kernel: Kernel) -> Option<&dyn BoxKernel> {
+        match kernel {
+            Kernel::Values | Kernel::Gradients => None,
+            Kernel::ValueEnclosures => Some(self.values()),
+            Kernel::GradientEnclosures => Some(self.gradients()),
+            Kernel::RoundingBounds => Some(&**compiled(self.formula.surface().rounding_bounds())),
+            Kernel::HessianEnclosures => self.hessians(),
+        }
     }
 
     /// F with its first and second derivatives over boxes, where that pays.

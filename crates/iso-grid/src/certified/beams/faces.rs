@@ -10,7 +10,7 @@ use super::area::Area;
 use super::bend::{Bend, Course};
 use super::form::{Form, Gradient};
 use super::pixels::Pixel;
-use super::subdivision::{Part, Subdivision, enclose_one};
+use super::subdivision::{Part, Subdivision};
 use crate::{Kernel, Span};
 
 /// More functions are left to smaller parts, where fewer of them matter.
@@ -58,18 +58,12 @@ impl Subdivision<'_> {
         if !self.is_fit(part) {
             return false;
         }
-        let size = self.size(part);
-        if self.memory.attempts_at_edges.are_vain(size) {
-            return false;
-        }
-        let is_followed = match self.made_of_several(part, part.kernels) {
+        match self.made_of_several(part, part.kernels) {
             Some(Made::Signed(_)) => true,
             Some(Made::Of(Extreme::Least, faces)) => self.follow_seam(part, &faces),
             Some(Made::Of(Extreme::Greatest, faces)) => self.follow_crease(part, &faces),
             None => false,
-        };
-        self.memory.attempts_at_edges.note(size, is_followed);
-        is_followed
+        }
     }
 
     /// The numbers of the kernels of which those of a number are the least or the greatest, if they are.
@@ -115,7 +109,7 @@ impl Subdivision<'_> {
     /// What a function of which F is made comes to on a part: a face if it is smooth.
     fn made(&mut self, part: &Part, kernels: u32) -> Option<Made> {
         let (t, center) = self.center(part);
-        let jet = self.jet_at(center, kernels);
+        let jet = self.jet_at(center, kernels)?;
         if let Some(gradient) = self.gradient_over(part, kernels) {
             let form = Form::new(self.beam(part.beam), part.form.reach, (t, center), jet[0], &gradient);
             if let Some(sign) = form.sign() {
@@ -135,9 +129,7 @@ impl Subdivision<'_> {
     /// The gradients of a function over a part, where it is smooth.
     fn gradient_over(&mut self, part: &Part, kernels: u32) -> Option<Gradient> {
         let bounds = self.beam(part.beam).bounds_in_space(part.form.reach);
-        let kernels = &self.kernels[kernels as usize];
-        let kernel = (Kernel::GradientEnclosures, kernels.gradients());
-        Gradient::new(enclose_one(self.workspace, kernels, kernel, bounds))
+        Gradient::new(self.enclose_one(kernels, Kernel::GradientEnclosures, bounds)?)
     }
 
     /// A ray that is to meet a face in a stretch, about how far from the middle of the part that is, and whether it is doubtful.

@@ -8,7 +8,7 @@ use iso_expr::{Decorated, Interval};
 use super::arcs::{Arc, Bowed, ways};
 use super::bend::Bend;
 use super::pixels::{Pixel, Verdict, halves_from};
-use super::subdivision::{Part, Subdivision, enclose_one};
+use super::subdivision::{Part, Subdivision};
 use crate::Kernel;
 
 /// Second derivatives are asked for beams of so many columns or rows: they say little about larger ones, and smaller ones are not
@@ -44,12 +44,12 @@ impl Attempts {
     }
 
     /// Whether they hardly ever helped with beams of such a size.
-    pub(super) fn are_vain(&self, size: usize) -> bool {
+    fn are_vain(&self, size: usize) -> bool {
         let class = Self::class(size);
         self.made[class] >= ENOUGH && SELDOM * self.helped[class] < self.made[class]
     }
 
-    pub(super) fn note(&mut self, size: usize, helped: bool) {
+    fn note(&mut self, size: usize, helped: bool) {
         let class = Self::class(size);
         self.made[class] += 1;
         self.helped[class] += u32::from(helped);
@@ -87,7 +87,7 @@ impl Subdivision<'_> {
         }
         self.kernels(part.kernels).hessians()?;
         let (t, center) = self.center(part);
-        let jet = self.jet_at(center, part.kernels);
+        let jet = self.jet_at(center, part.kernels)?;
         self.expand(part, (t, center), jet, part.kernels)
     }
 
@@ -98,7 +98,7 @@ impl Subdivision<'_> {
     }
 
     /// How many columns or rows the beam of a part has.
-    pub(super) fn size(&self, part: &Part) -> usize {
+    fn size(&self, part: &Part) -> usize {
         let area = self.beam(part.beam).area;
         area.width.max(area.height)
     }
@@ -110,11 +110,10 @@ impl Subdivision<'_> {
         (t, beam.origins.middle + t * beam.directions.middle)
     }
 
-    /// Finds F and its gradient at a point.
-    pub(super) fn jet_at(&mut self, center: DVec3, kernels: u32) -> [Interval; 4] {
-        let kernels = &self.kernels[kernels as usize];
-        let kernel = (Kernel::GradientEnclosures, kernels.gradients());
-        enclose_one(self.workspace, kernels, kernel, (center, center)).map(|found: Decorated| found.interval)
+    /// F and its gradient at a point.
+    pub(super) fn jet_at(&mut self, center: DVec3, kernels: u32) -> Option<[Interval; 4]> {
+        let found = self.enclose_one(kernels, Kernel::GradientEnclosures, (center, center))?;
+        Some(found.map(|found: Decorated| found.interval))
     }
 
     /// F by kernels of this number to second order around the middle of a part, where it and its gradient are `jet`.
@@ -125,11 +124,9 @@ impl Subdivision<'_> {
         jet: [Interval; 4],
         kernels: u32,
     ) -> Option<Bend> {
-        let beam = &self.memory.beams[part.beam as usize];
-        let kernels = &self.kernels[kernels as usize];
-        let kernel = (Kernel::HessianEnclosures, kernels.hessians()?);
-        let bounds = beam.bounds_in_space(part.form.reach);
-        Bend::new(beam, center, jet, enclose_one(self.workspace, kernels, kernel, bounds))
+        let bounds = self.beam(part.beam).bounds_in_space(part.form.reach);
+        let hessian = self.enclose_one(kernels, Kernel::HessianEnclosures, bounds)?;
+        Bend::new(self.beam(part.beam), center, jet, hessian)
     }
 
     /// How far values by kernels of this number may be off all over a part, if that is bounded.

@@ -6,7 +6,7 @@ use iso_expr::{Decorated, Decoration, Interval, Program};
 
 use super::beam::Beam;
 use super::form::ROUNDING;
-use super::subdivision::{Subdivision, enclose_one};
+use super::subdivision::Subdivision;
 use crate::{Kernel, Span};
 
 /// How many times its size a box for which rounding is bounded grows at each side, so that it holds neighbours too.
@@ -54,12 +54,10 @@ impl Subdivision<'_> {
 
     /// What rounding does to F on a box.
     pub(super) fn rounding(&mut self, kernels: u32, (lo, hi): (DVec3, DVec3)) -> Option<Rounding> {
-        let of_part = &self.kernels[kernels as usize];
         let sides = outwards(lo, hi);
         let corners = [sides.map(|side| side.lo), sides.map(|side| side.hi)].map(DVec3::from_array);
-        let kernel = (Kernel::RoundingBounds, of_part.rounding());
         let [value, bounds @ ..]: [Decorated; 5] =
-            enclose_one(self.workspace, of_part, kernel, (corners[0], corners[1]));
+            self.enclose_one(kernels, Kernel::RoundingBounds, (corners[0], corners[1]))?;
         let is_known = value.decoration == Decoration::Common
             && bounds.iter().all(|bound| bound.decoration >= Decoration::Defined);
         let [of_values, gradient @ ..] = bounds.map(|bound| bound.interval.magnitude());

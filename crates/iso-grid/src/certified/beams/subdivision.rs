@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec3;
-use iso_expr::{BoxKernel, Decorated, Extreme, Interval};
+use iso_expr::{Decorated, Extreme, Interval};
 use rustc_hash::FxHashMap;
 
 use super::arcs::Bowed;
@@ -102,21 +102,6 @@ struct Behind {
     reach: Span,
 }
 
-/// Encloses the `N` outputs of a kernel over the box with these corners.
-pub(super) fn enclose_one<const N: usize>(
-    workspace: &mut Workspace,
-    kernels: &Kernels,
-    (name, kernel): (Kernel, &dyn BoxKernel),
-    (lo, hi): (DVec3, DVec3),
-) -> [Decorated; N] {
-    let Workspace { boxes, scratch, counters, .. } = workspace;
-    boxes.replace(std::iter::once((&lo, &hi)));
-    boxes.evaluate(kernel, scratch, N);
-    counters.box_evaluations += 1;
-    counters.operations += kernels.charge(name, 1);
-    std::array::from_fn(|output| boxes.decorated(output, 0))
-}
-
 /// `count` parts of `span`, equally long.
 fn slices(span: Span, count: usize) -> impl DoubleEndedIterator<Item = Span> {
     let cut = move |at: usize| {
@@ -138,7 +123,6 @@ pub(crate) struct Memory {
     pub(super) beams: Vec<Beam>,
     slabs: Vec<Slab>,
     pub(super) attempts: Attempts,
-    pub(super) attempts_at_edges: Attempts,
     pub(super) pixels: Vec<Pixel<Secants>>,
     pub(super) bowed: Vec<Pixel<Bowed>>,
     pub(super) approaches: Vec<Approach>,
@@ -193,7 +177,6 @@ impl<'a> Subdivision<'a> {
         memory.beams.push(beam);
         memory.rounding = None;
         memory.attempts = Attempts::default();
-        memory.attempts_at_edges = Attempts::default();
         memory.open.clear();
         memory.open.resize(tile.len(), true);
         let kernels = vec![Arc::clone(&certified.kernels)];
@@ -259,6 +242,23 @@ impl<'a> Subdivision<'a> {
     /// The column and the row of a ray of the tile.
     pub(super) fn position(&self, place: usize) -> (usize, usize) {
         (place % self.tile.width(), place / self.tile.width())
+    }
+
+    /// Encloses the `N` outputs of one of the kernels of a number over the box with these corners; `None` where that does not pay.
+    pub(super) fn enclose_one<const N: usize>(
+        &mut self,
+        number: u32,
+        kernel: Kernel,
+        (lo, hi): (DVec3, DVec3),
+    ) -> Option<[Decorated; N]> {
+        let kernels = &self.kernels[number as usize];
+        let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
+        boxes.replace(std::iter::once((&lo, &hi)));
+        boxes.evaluate(kernels.over_boxes(kernel)?, scratch, N);
+        counters.box_evaluations += 1;
+        counters.operations += kernels.charge(kernel, 1);
+        self.work_left = self.work_left.saturating_sub(1);
+        Some(std::array::from_fn(|output| boxes.decorated(output, 0)))
     }
 
     /// Whether some ray of `area` is still followed.
