@@ -1,5 +1,5 @@
-//! Kernels over boxes that are assembled from [pieces](crate::pieces), operation by operation, instead of being compiled: for programs that run too
-//! few times to be worth compiling, or are too large for it.
+//! Kernels over boxes that are assembled from [pieces](crate::pieces), operation by operation, instead of being compiled: for programs
+//! that run too few times to be worth compiling, or are too large for it.
 
 use std::sync::Arc;
 
