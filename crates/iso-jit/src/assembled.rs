@@ -9,13 +9,14 @@ use iso_expr::{
     Operation, PointKernel, Program, Scratch,
 };
 
+use crate::boxes::PAIR;
 use crate::domain::Domain;
 use crate::enclosures;
 use crate::engine::NAME;
 use crate::pieces::{Apply, KNOWN, Kind, LO, MINUS_HI, Piece, Pieces, SIZE};
 
-/// Boxes in one run.
-const PAIR: usize = 2;
+/// The most nodes of a program: for more, places would not fit into half of 32 bits.
+const LARGEST: usize = Place::CONSTANT as usize / SIZE;
 
 /// The engine for kernels that are not worth compiling. Those over points are interpreted.
 #[derive(Clone)]
@@ -93,8 +94,12 @@ impl Assembled {
     /// Assembles `program`, every node of which some output needs.
     ///
     /// # Errors
-    /// When a piece cannot be compiled.
+    /// When a piece cannot be compiled, or the program has more nodes than anybody's memory holds.
     pub(crate) fn new(pieces: &Arc<Pieces>, program: &Program) -> Result<Self, CompileError> {
+        let (given, allowed) = (program.nodes().len(), LARGEST);
+        if given > allowed {
+            return Err(CompileError::TooLarge { engine: NAME, given, allowed });
+        }
         let Domain { ranges, .. } = Domain::near(program);
         let wanted = program.iter().filter_map(|(id, node)| match node {
             Node::Apply(operation, operands) => {
@@ -137,7 +142,7 @@ impl Assembled {
         let start = computed.as_mut_ptr();
         let constants = self.constants.as_ptr();
         for Step { apply, result, operands, .. } in &self.steps {
-            // SAFETY: places are inside what they are counted in, and the pieces live as long as the kernel. A result stands
+            // SAFETY: places are inside what they are counted in, of which no count overflowed, and the pieces live as long as the kernel. A result stands
             // behind the operands, so that a piece reads nothing that it writes.
             unsafe {
                 let [a, b, c] = operands.map(|place| {

@@ -11,7 +11,6 @@ use rustc_hash::FxHashMap;
 
 use crate::code::{Blueprint, Compiled};
 use crate::domain::Sign;
-use crate::elementary;
 use crate::enclosures::{self, Enclosure};
 use crate::host::{self, Host, Limits};
 use crate::lanes::{Lanes, Writer};
@@ -108,7 +107,6 @@ impl Piece {
         operand: &Enclosure,
         range: Decorated,
     ) -> Option<Enclosure> {
-        elementary::sines_and_cosines()?;
         let both = Room::new(writer).call_for_both(writer, calls, operand)?;
         Some(Enclosure { range, ..both[usize::from(operation == Operation::Cos)] })
     }

@@ -84,6 +84,9 @@ fn programs_beyond_the_limits_are_refused() {
     let jit = Jit::new().unwrap();
     let refusal = jit.batch(&deep_program(60_000)).err().unwrap();
     assert!(matches!(refusal, CompileError::TooLarge { engine: "jit", given: 120_000, .. }), "{refusal}");
+    // So many values at once that they overflow the stack, not the limit of operations.
+    let refusal = jit.batch(&Random::new(1).wide_program(45_000)).err().unwrap();
+    assert!(matches!(refusal, CompileError::FrameTooLarge { engine: "jit", .. }), "{refusal}");
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! What holds of any program over any boxes: native code, compiled or assembled, gives the interpreter's enclosures, ends bit for bit and
-//! decorations.
+//! What holds of any program over any boxes: native code, compiled or assembled, gives the interpreter's enclosures, ends bit for
+//! bit and decorations.
 
 use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::random::Random;
