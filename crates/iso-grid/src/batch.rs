@@ -5,6 +5,7 @@ use iso_expr::engine::{Boxes, Enclosures, Points};
 use iso_expr::{BatchKernel, BoxKernel, Decorated, Decoration, Interval, Scratch};
 
 use crate::Ray;
+use crate::lanes::{ROW, Row};
 
 /// Points coordinate by coordinate, and room for what a kernel says of them.
 #[derive(Debug, Default)]
@@ -34,6 +35,15 @@ impl PointBatch {
             coordinates.clear();
             coordinates.extend(places.clone().map(|(ray, t)| ray.origin[axis] + t * ray.direction[axis]));
         }
+    }
+
+    /// Room for so many rows of points in place of all others, coordinate by coordinate.
+    pub(crate) fn rows(&mut self, count: usize) -> impl Iterator<Item = [&mut Row; 3]> {
+        let [x, y, z] = [&mut self.x, &mut self.y, &mut self.z].map(|coordinates| {
+            coordinates.resize(count * ROW, 0.0);
+            coordinates.as_chunks_mut().0.iter_mut()
+        });
+        x.zip(y).zip(z).map(|((x, y), z)| [x, y, z])
     }
 
     /// Adds the points of a ray at these places.

@@ -9,6 +9,7 @@ mod certified;
 mod counters;
 mod error;
 mod fitted;
+mod lanes;
 mod method;
 mod normals;
 mod paper;

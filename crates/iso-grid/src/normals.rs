@@ -2,12 +2,14 @@
 
 use glam::DVec3;
 use iso_expr::{BatchKernel, CompileError, Scratch};
+use pulp::{Simd, WithSimd};
 
 use crate::batch::PointBatch;
-use crate::{Counters, Hit, Outcome, Ray, Surface, Tile, Workspace};
+use crate::lanes::{Lanes, ROW, Row, parts};
+use crate::{Hit, Outcome, Span, Surface, Tile, Workspace};
 
-/// Hits whose gradients are asked for by one call of the kernel.
-const BATCH: usize = 256;
+/// How many rows of points are asked about by one call of the kernel.
+const ROWS: usize = 32;
 /// The distances in front of a point at which its normal is looked for when it has none itself, as parts of the distance
 /// that the ray has come: 2⁻⁴⁰, and from there on in powers of 8 up to 2⁻¹⁰.
 const APPROACH: [i32; 11] = [-40, -37, -34, -31, -28, -25, -22, -19, -16, -13, -10];
@@ -37,98 +39,154 @@ pub fn normals(
         return Ok(());
     }
     let kernel = &**surface.gradients()?;
-    let Workspace { scratch, counters, points, .. } = workspace;
-    let mut gradients = Gradients { kernel, scratch, counters, points, places: Vec::with_capacity(BATCH) };
-    let mut others = Vec::new();
-    for (place, ((column, row), outcome)) in tile.positions().zip(outcomes).enumerate() {
+    let mut asked = std::mem::take(&mut workspace.asked);
+    asked.clear();
+    asked.extend(
+        outcomes.iter().map(|outcome| if let Outcome::Hit(hit) = outcome { hit.t } else { f64::NAN }),
+    );
+    answer(kernel, workspace, tile, &asked, normals);
+    let mut others: Vec<Met> = Vec::new();
+    for (place, outcome) in outcomes.iter().enumerate() {
         match *outcome {
-            Outcome::Hit(hit) => gradients.ask(place, tile.ray(column, row).at(hit.t), normals),
+            Outcome::Hit(Hit { bracket, .. }) if normals[place].x.is_nan() => {
+                others.push(Met { place, bracket })
+            }
             // The gradient there may be nothing but rounding.
-            Outcome::Touch(hit) => others.push(Met { place, ray: tile.ray(column, row), hit }),
-            Outcome::Miss | Outcome::Undecided(_) => {}
-        }
-    }
-    gradients.answer(normals);
-    for (place, ((column, row), outcome)) in tile.positions().zip(outcomes).enumerate() {
-        if let (Outcome::Hit(hit), true) = (*outcome, normals[place].x.is_nan()) {
-            others.push(Met { place, ray: tile.ray(column, row), hit });
+            Outcome::Touch(Hit { bracket, .. }) => others.push(Met { place, bracket }),
+            _ => {}
         }
     }
     for approach in APPROACH {
-        others.iter().for_each(|met| gradients.ask(met.place, met.point_in_front(approach), normals));
-        gradients.answer(normals);
+        if others.is_empty() {
+            break;
+        }
+        asked.fill(f64::NAN);
+        for met in &others {
+            asked[met.place] = met.in_front(&tile, approach);
+        }
+        answer(kernel, workspace, tile, &asked, normals);
         others.retain(|met| normals[met.place].is_nan());
     }
+    workspace.asked = asked;
     Ok(())
 }
 
-/// Points whose gradients are asked for together.
-struct Gradients<'a> {
+/// Puts the normals in their places that are asked for: at these t of the rays of a tile, NaN where none is.
+fn answer(
+    kernel: &dyn BatchKernel,
+    workspace: &mut Workspace,
+    tile: Tile<'_>,
+    asked: &[f64],
+    normals: &mut [DVec3],
+) {
+    let Workspace { arch, scratch, counters, points, .. } = workspace;
+    counters.gradient_evaluations += arch.dispatch(Search { kernel, tile, asked, points, scratch, normals });
+}
+
+/// The search for the normals of a tile.
+struct Search<'a> {
     kernel: &'a dyn BatchKernel,
-    scratch: &'a mut Scratch,
-    counters: &'a mut Counters,
+    tile: Tile<'a>,
+    asked: &'a [f64],
     points: &'a mut PointBatch,
-    /// Where the normal of each point is to stand.
-    places: Vec<usize>,
+    scratch: &'a mut Scratch,
+    normals: &'a mut [DVec3],
 }
 
-impl Gradients<'_> {
-    /// Asks for the normal at a point, which is to stand at a place of `normals`.
-    fn ask(&mut self, place: usize, point: DVec3, normals: &mut [DVec3]) {
-        if self.places.is_empty() {
-            self.points.clear();
-        }
-        self.points.push(point);
-        self.places.push(place);
-        if self.places.len() == BATCH {
-            self.answer(normals);
-        }
-    }
+impl WithSimd for Search<'_> {
+    /// How many gradients it took.
+    type Output = u64;
 
-    /// Puts the normals asked for in their places, NaN where there is none.
-    fn answer(&mut self, normals: &mut [DVec3]) {
-        let count = self.places.len();
-        if count == 0 {
-            return;
-        }
-        self.counters.gradient_evaluations += count as u64;
-        let outputs = self.points.evaluate(self.kernel, self.scratch, 4);
-        let [x, y, z] = [1, 2, 3].map(|output| &outputs[output * count..][..count]);
-        for (number, place) in self.places.drain(..).enumerate() {
-            let gradient = DVec3::new(x[number], y[number], z[number]);
-            normals[place] = unit(gradient).unwrap_or(DVec3::NAN);
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> u64 {
+        let Self { kernel, tile, asked, points, scratch, normals } = self;
+        let mut evaluations = 0;
+        let mut units = [[0.0; ROW]; 4];
+        let mut rows =
+            (0..asked.len()).step_by(ROW).filter(|first| row_from(asked, *first).iter().any(|t| !t.is_nan()));
+        let mut firsts = [0; ROWS];
+        loop {
+            let mut count = 0;
+            for (place, first) in firsts.iter_mut().zip(&mut rows) {
+                *place = first;
+                count += 1;
+            }
+            if count == 0 {
+                return evaluations;
+            }
+            evaluations += (count * ROW) as u64;
+            for (first, coordinates) in firsts.iter().zip(points.rows(count)) {
+                tile.row_from(simd, *first).at(simd, &row_from(asked, *first), coordinates);
+            }
+            let outputs = points.evaluate(kernel, scratch, 4);
+            let (outputs, _) = outputs.as_chunks::<ROW>();
+            for (number, first) in firsts[..count].iter().enumerate() {
+                let gradients = [1, 2, 3].map(|output| &outputs[output * count + number]);
+                put_units(simd, gradients, &mut units);
+                for (lane, t) in asked[*first..].iter().take(ROW).enumerate() {
+                    if t.is_nan() {
+                        continue;
+                    }
+                    let [x, y, z, is_plain] = units.each_ref().map(|row| row[lane]);
+                    let found = || unit_of(DVec3::from_array(gradients.map(|row| row[lane])));
+                    normals[first + lane] = if is_plain > 0.0 { DVec3::new(x, y, z) } else { found() };
+                }
+            }
         }
     }
 }
 
-/// A point of the surface that a ray meets, and the ray's place.
+/// The numbers from one on; NaN behind the last.
+#[inline(always)]
+fn row_from(numbers: &[f64], first: usize) -> Row {
+    let rest = &numbers[first..];
+    if let Some(row) = rest.first_chunk() {
+        return *row;
+    }
+    let mut row = [f64::NAN; ROW];
+    row[..rest.len()].copy_from_slice(rest);
+    row
+}
+
+/// The directions of vectors, coordinate by coordinate, and beside them 1 where squares neither overflow nor underflow, or else 0.
+#[inline(always)]
+fn put_units<S: Simd>(simd: S, vectors: [&Row; 3], [units @ .., are_plain]: &mut [Row; 4]) {
+    let all = |number| Lanes::all(simd, number);
+    for part in 0..parts::<S>() {
+        let [x, y, z] = vectors;
+        let (x, y, z) = (Lanes::of(simd, x, part), Lanes::of(simd, y, part), Lanes::of(simd, z, part));
+        let square = x * x + y * y + z * z;
+        let is_plain = all(1e-200).is_at_most(square) & square.is_less(all(1e200));
+        let scale = all(1.0) / square.sqrt();
+        for (vector, unit) in [x, y, z].into_iter().zip(&mut *units) {
+            (scale * vector).put(unit, part);
+        }
+        is_plain.select(all(1.0), all(0.0)).put(are_plain, part);
+    }
+}
+
+/// The direction of a vector whatever its length, NaN for zero and for what is not finite: it is scaled by its largest component
+/// first, where squares may overflow or underflow.
+#[cold]
+fn unit_of(vector: DVec3) -> DVec3 {
+    let largest = vector.abs().max_element();
+    if vector.is_finite() && largest > 0.0 { (vector / largest).normalize() } else { DVec3::NAN }
+}
+
+/// The ray of this place in a tile meets the surface in a bracket.
 struct Met {
     place: usize,
-    ray: Ray,
-    hit: Hit,
+    bracket: Span,
 }
 
 impl Met {
-    /// The point in front of the bracket by 2 to this power of the way to it, or of the bracket's length if that is more.
-    fn point_in_front(&self, power: i32) -> DVec3 {
-        let bracket = self.hit.bracket;
-        let way = bracket
-            .end
-            .abs()
-            .max(self.ray.origin.abs().max_element() / self.ray.direction.abs().max_element());
+    /// Where the ray is in front of the bracket by 2 to this power of the way to it, or of the bracket's length if that is more.
+    fn in_front(&self, tile: &Tile<'_>, power: i32) -> f64 {
+        let Span { start, end } = self.bracket;
+        let ray = tile.ray(self.place % tile.width(), self.place / tile.width());
+        let way = end.abs().max(ray.origin.abs().max_element() / ray.direction.abs().max_element());
         let nearest = way * 2_f64.powi(APPROACH[0]);
-        let distance = nearest.max(bracket.end - bracket.start) * 2_f64.powi(power - APPROACH[0]);
-        self.ray.at(bracket.start - distance)
+        let distance = nearest.max(end - start) * 2_f64.powi(power - APPROACH[0]);
+        start - distance
     }
-}
-
-/// The vector's direction, whatever its length: it is scaled by its largest component first where squares may overflow or
-/// underflow. `None` for zero and for what is not finite.
-fn unit(vector: DVec3) -> Option<DVec3> {
-    let square = vector.length_squared();
-    if (1e-200..1e200).contains(&square) {
-        return Some(square.sqrt().recip() * vector);
-    }
-    let largest = vector.abs().max_element();
-    (vector.is_finite() && largest > 0.0).then(|| (vector / largest).normalize())
 }

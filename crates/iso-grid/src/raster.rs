@@ -1,8 +1,10 @@
 //! Rays side by side: those of a picture, and those of a part of it.
 
 use glam::DVec3;
+use pulp::Simd;
 
 use crate::Ray;
+use crate::lanes::{Lanes, ROW, Row, parts};
 
 /// The rays of a picture: one for each column and row, evenly spaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +44,62 @@ impl Raster {
             }
             Self::Spreading { eye, forward, right, down } => {
                 Ray { origin: eye, direction: (forward + (across * right + along * down)).normalize() }
+            }
+        }
+    }
+
+    /// Origins and directions of rays, coordinate by coordinate, each as [`Raster::ray`] has it to the last bit.
+    #[inline(always)]
+    fn rays<S: Simd>(&self, simd: S, [across, along]: [Lanes<S>; 2]) -> [[Lanes<S>; 3]; 2] {
+        let at = [across, along];
+        match *self {
+            Self::Parallel { middle, right, down, direction } => {
+                [combination(simd, middle, [right, down], at), everywhere(simd, direction)]
+            }
+            Self::Spreading { eye, forward, right, down } => {
+                let [x, y, z] = combination(simd, forward, [right, down], at);
+                let scale = Lanes::all(simd, 1.0) / (x * x + y * y + z * z).sqrt();
+                [everywhere(simd, eye), [x * scale, y * scale, z * scale]]
+            }
+        }
+    }
+}
+
+/// The same vector everywhere, coordinate by coordinate.
+#[inline(always)]
+fn everywhere<S: Simd>(simd: S, vector: DVec3) -> [Lanes<S>; 3] {
+    [Lanes::all(simd, vector.x), Lanes::all(simd, vector.y), Lanes::all(simd, vector.z)]
+}
+
+/// `from` and so many times the other two vectors, coordinate by coordinate.
+#[inline(always)]
+fn combination<S: Simd>(
+    simd: S,
+    from: DVec3,
+    [right, down]: [DVec3; 2],
+    [across, along]: [Lanes<S>; 2],
+) -> [Lanes<S>; 3] {
+    let ([x, y, z], [rx, ry, rz], [dx, dy, dz]) =
+        (everywhere(simd, from), everywhere(simd, right), everywhere(simd, down));
+    [x + (across * rx + along * dx), y + (across * ry + along * dy), z + (across * rz + along * dz)]
+}
+
+/// Some rays of a tile, coordinate by coordinate.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct RayRow {
+    pub(crate) origins: [Row; 3],
+    pub(crate) directions: [Row; 3],
+}
+
+impl RayRow {
+    /// The points of the rays at `t`, each as [`Ray::at`] has it to the last bit.
+    #[inline(always)]
+    pub(crate) fn at<S: Simd>(&self, simd: S, t: &Row, points: [&mut Row; 3]) {
+        for (axis, coordinates) in points.into_iter().enumerate() {
+            for part in 0..parts::<S>() {
+                let origin = Lanes::of(simd, &self.origins[axis], part);
+                let direction = Lanes::of(simd, &self.directions[axis], part);
+                (origin + Lanes::of(simd, t, part) * direction).put(coordinates, part);
             }
         }
     }
@@ -107,6 +165,50 @@ impl<'a> Tile<'a> {
             Rays::Raster { raster, across, along } => raster.ray(across + column as f64, along + row as f64),
             Rays::Listed(rays) => rays[row * self.width + column],
         }
+    }
+
+    /// The rays from this place on, counted row by row; behind the last one, the first again.
+    #[inline(always)]
+    pub(crate) fn row_from<S: Simd>(&self, simd: S, first: usize) -> RayRow {
+        let (mut columns, mut rows) = (Row::default(), Row::default());
+        let (mut column, mut row) = (first % self.width, first / self.width);
+        for lane in 0..ROW.min(self.len() - first) {
+            (columns[lane], rows[lane]) = (column as f64, row as f64);
+            column += 1;
+            if column == self.width {
+                (column, row) = (0, row + 1);
+            }
+        }
+        self.row(simd, &columns, &rows)
+    }
+
+    /// The rays in these columns and rows.
+    #[inline(always)]
+    pub(crate) fn row<S: Simd>(&self, simd: S, columns: &Row, rows: &Row) -> RayRow {
+        let mut found = RayRow::default();
+        match self.rays {
+            Rays::Raster { raster, across, along } => {
+                for part in 0..parts::<S>() {
+                    let across = Lanes::all(simd, across) + Lanes::of(simd, columns, part);
+                    let along = Lanes::all(simd, along) + Lanes::of(simd, rows, part);
+                    let [origins, directions] = raster.rays(simd, [across, along]);
+                    for axis in 0..3 {
+                        origins[axis].put(&mut found.origins[axis], part);
+                        directions[axis].put(&mut found.directions[axis], part);
+                    }
+                }
+            }
+            Rays::Listed(_) => {
+                for lane in 0..ROW {
+                    let Ray { origin, direction } = self.ray(columns[lane] as usize, rows[lane] as usize);
+                    for axis in 0..3 {
+                        found.origins[axis][lane] = origin[axis];
+                        found.directions[axis][lane] = direction[axis];
+                    }
+                }
+            }
+        }
+        found
     }
 
     /// The column and the row of each ray, row by row.

@@ -1,6 +1,7 @@
 //! What every method of intersection offers.
 
 use iso_expr::Scratch;
+use pulp::Arch;
 
 use crate::batch::{BoxBatch, PointBatch};
 use crate::certified::{Ahead, Entry, Expansion, Memory};
@@ -56,6 +57,10 @@ pub struct Workspace {
     pub scratch: Scratch,
     /// What was done with this workspace so far.
     pub counters: Counters,
+    /// How many numbers the processor computes with at once.
+    pub(crate) arch: Arch,
+    /// Where normals are asked for along the rays of a tile.
+    pub(crate) asked: Vec<f64>,
     /// Points for the kernels, and their values.
     pub(crate) points: PointBatch,
     /// Points whose gradients are asked for beside their values.

@@ -208,14 +208,19 @@ impl Form {
 /// b·`by_row`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Model {
-    t: f64,
-    by_column: f64,
-    by_row: f64,
+    pub(super) t: f64,
+    pub(super) by_column: f64,
+    pub(super) by_row: f64,
     /// How far from there a root may be in the stretch on which the form holds.
     pub(super) uncertainty: f64,
 }
 
 impl Model {
+    /// Between which t of the model roots lie that are in a stretch.
+    pub(super) fn around(&self, stretch: Span) -> [f64; 2] {
+        [stretch.start - self.uncertainty, stretch.end + self.uncertainty]
+    }
+
     pub(super) fn at(&self, across: f64, along: f64) -> f64 {
         self.t + (across * self.by_column + along * self.by_row)
     }

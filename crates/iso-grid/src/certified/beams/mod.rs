@@ -19,6 +19,7 @@ mod arcs;
 mod area;
 mod beam;
 mod bend;
+mod bundle;
 mod creases;
 mod faces;
 mod form;

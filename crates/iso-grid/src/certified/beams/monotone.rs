@@ -1,12 +1,15 @@
 //! The roots of single rays of a beam along which F is monotone.
 
+use super::area::Area;
 use super::beam::Beam;
+use super::bundle::{AT_ONCE, Bundle, Pursuit, Sight, Start};
 use super::form::{Form, Model, ROUNDING};
-use super::pixels::{Known, Pixel, Verdict, halves_from};
+use super::pixels::{Ended, halves_from};
 use super::rounding::Rounding;
 use super::subdivision::{Part, Subdivision};
-use crate::Span;
 use crate::certified::clip::Clip;
+use crate::lanes::ROW;
+use crate::{Kernel, Span, Workspace};
 
 /// An enclosure of a root no wider than this many times what rounding of F alone makes it is as narrow as it gets.
 const ROUNDINGS: f64 = 2.0;
@@ -22,28 +25,6 @@ const DOUBTFUL: usize = 16;
 
 /// Rounding so many times smaller than the tolerance does not matter.
 const SHARP: f64 = 64.0;
-
-/// What values of F along a ray tell of its root.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Secants {
-    /// F at the last two places, NaN where that is unknown; how far the pixel's t is from the last one; and how far t went there for
-    /// each unit of F.
-    values: [f64; 2],
-    step: f64,
-    secant: f64,
-}
-
-/// What a double computed for F says about the root, all over a part.
-pub(super) struct Sight {
-    /// One over the middle of the slopes of F.
-    inverse: f64,
-    /// How far that is from one over any slope, as part of it.
-    unevenness: f64,
-    /// How far rounding of F may move a root.
-    blur: f64,
-    /// How wide the enclosure of a root may be.
-    tolerance: f64,
-}
 
 impl Sight {
     /// `None` where nothing is known.
@@ -95,7 +76,7 @@ impl Subdivision<'_> {
             let corners = [(-across, -along), (across, -along), (-across, along), (across, along)];
             return corners.into_iter().all(|(a, b)| (start..=end).contains(&model.at(a, b)));
         }
-        let (least, most) = (start - model.uncertainty, end + model.uncertainty);
+        let [least, most] = model.around(part.stretch);
         let mut doubtful = 0;
         for (row, b) in area.rows().zip(halves_from(-along)) {
             let open = &self.memory.open[row * self.tile.width()..][area.columns()];
@@ -112,10 +93,39 @@ impl Subdivision<'_> {
     fn follow_each(&mut self, part: &Part, model: &Model) {
         let kernels = self.kernels_for(part);
         let Some(sight) = self.sight(part, kernels) else { return self.search_each(part) };
-        let mut pixels = std::mem::take(&mut self.memory.pixels);
-        let count = self.start(part, model, &mut pixels);
-        self.pursue_and_settle(&mut pixels[..count], kernels, &sight);
-        self.memory.pixels = pixels;
+        let mut bundles = std::mem::take(&mut self.memory.bundles);
+        let count = self.bundle(part, model, &mut bundles);
+        for bundles in bundles[..count].chunks_mut(AT_ONCE) {
+            self.pursue_bundles(bundles, (part, model), kernels, &sight);
+            for (place, end) in bundles.iter().flat_map(Bundle::ends) {
+                self.settle(Ended { place, end }, kernels);
+            }
+        }
+        self.memory.bundles = bundles;
+    }
+
+    /// Follows the rays of no more than [`AT_ONCE`] bundles.
+    fn pursue_bundles(
+        &mut self,
+        bundles: &mut [Bundle],
+        (part, model): (&Part, &Model),
+        kernels: u32,
+        sight: &Sight,
+    ) {
+        let Area { column, row, .. } = self.beam(part.beam).area;
+        let [across, along] = self.beam(part.beam).radii;
+        let Workspace { arch, points, scratch, counters, .. } = &mut *self.workspace;
+        let of_part = &self.kernels[kernels as usize];
+        let start = &Start {
+            tile: &self.tile,
+            model,
+            middle: (column as f64 + across, row as f64 + along),
+            within: model.around(part.stretch),
+        };
+        let pursuit = Pursuit { start, bundles, sight, kernel: of_part.points(), points, scratch };
+        let evaluations = arch.dispatch(pursuit);
+        counters.trace_evaluations += evaluations as u64;
+        counters.operations += of_part.charge(Kernel::Values, evaluations);
     }
 
     /// What values by kernels of this number say over a part. `None` when rounding is not bounded there.
@@ -135,100 +145,59 @@ impl Subdivision<'_> {
         sight(&exact, self.beam(part.beam))
     }
 
-    /// Puts the rays of a part that are still followed and may have a root there in front of `pixels`, and counts them. Those that
-    /// may have one so near to a face of the region that no point inside is known are searched each for its own.
-    fn start(&mut self, part: &Part, model: &Model, pixels: &mut Vec<Pixel<Secants>>) -> usize {
+    /// Bundles the rays of a part that are still followed, and counts the bundles. Those that may have a root so near to a face of
+    /// the region that no point inside is known are searched each for its own.
+    fn bundle(&mut self, part: &Part, model: &Model, bundles: &mut Vec<Bundle>) -> usize {
         let Beam { area, radii: [across, along], .. } = *self.beam(part.beam);
-        let room = area.width * area.height;
-        if pixels.len() < room {
-            pixels.resize(room, Pixel::default());
-        }
-        let least = part.stretch.start - model.uncertainty;
-        let most = part.stretch.end + model.uncertainty;
+        bundles.resize_with(bundles.len().max((area.width * area.height).div_ceil(ROW)), Bundle::default);
+        let (wanted, reach) = (part.stretch, part.form.reach);
         let mut count = 0;
+        let mut lane = ROW;
         for (row, b) in area.rows().zip(halves_from(-along)) {
             for (column, a) in area.columns().zip(halves_from(-across)) {
+                if lane == ROW {
+                    bundles[count].clear();
+                    count += 1;
+                    lane = 0;
+                }
                 let place = row * self.tile.width() + column;
-                let t = model.at(a, b);
-                if t < least || most < t || !self.memory.open[place] {
-                    continue;
+                if self.memory.open[place] {
+                    let mut within = Some([wanted, reach]);
+                    if !part.is_inside {
+                        within = self.clipped(part, (column, row), (model, model.at(a, b)));
+                    }
+                    if let Some(within) = within {
+                        bundles[count - 1].put(lane, (place, column, row), within);
+                    }
                 }
-                let pixel = &mut pixels[count];
-                pixel.ray = self.tile.ray(column, row);
-                (pixel.wanted, pixel.reach) = (part.stretch, part.form.reach);
-                if !part.is_inside {
-                    let clip = Clip::new(&self.certified.region, &pixel.ray);
-                    let Some(Clip { outer, inner }) = clip else { continue };
-                    pixel.wanted = common(pixel.wanted, outer);
-                    pixel.reach = common(pixel.reach, inner);
-                }
-                if pixel.wanted.start > pixel.wanted.end {
-                    continue;
-                }
-                if pixel.reach.start > pixel.reach.end {
-                    let wanted = pixel.wanted;
-                    self.search_one((column, row), wanted, part.kernels);
-                    continue;
-                }
-                pixel.place = place;
-                pixel.t = t.max(pixel.reach.start).min(pixel.reach.end);
-                pixel.known.values = [f64::NAN; 2];
-                count += 1;
+                lane += 1;
             }
         }
         count
     }
-}
 
-impl Known for Secants {
-    type Sight = Sight;
-
-    /// One step of the interval Newton method, for all slopes of the part at once, where `value` was computed for F at t. All
-    /// roots in reach lie in its result, and if that lies in reach itself, there is one. Where it is about, values so far tell.
-    #[inline]
-    fn look(pixel: &mut Pixel<Self>, value: f64, sight: &Sight) -> Verdict {
-        let Sight { inverse, unevenness, blur, tolerance } = *sight;
-        let offset = value * inverse;
-        let middle = pixel.t - offset;
-        let rounding = ROUNDING * (pixel.t + offset.abs());
-        let radius = offset.abs() * unevenness + blur + rounding;
-        let root = Span { start: middle - radius, end: middle + radius };
-        if root.end < pixel.wanted.start || pixel.wanted.end < root.start {
-            return Verdict::Free;
+    /// Where a ray may have its root inside the region, which is about at `t` by the model, and where the part's certificate holds
+    /// there. `None` when it has none, or was searched.
+    fn clipped(
+        &mut self,
+        part: &Part,
+        (column, row): (usize, usize),
+        (model, t): (&Model, f64),
+    ) -> Option<[Span; 2]> {
+        let [least, most] = model.around(part.stretch);
+        if t < least || most < t {
+            return None;
         }
-        let nearer = pixel.known.interpolate(pixel.t, value, sight).unwrap_or(middle);
-        if 2.0 * radius <= tolerance {
-            let is_inside = pixel.reach.start <= root.start && root.end <= pixel.reach.end;
-            if !is_inside {
-                return Verdict::Lost;
-            }
-            pixel.t = nearer.max(root.start).min(root.end);
-            pixel.wanted = root;
-            return Verdict::Hit;
+        let Clip { outer, inner } = Clip::new(&self.certified.region, &self.tile.ray(column, row))?;
+        let (wanted, reach) = (common(part.stretch, outer), common(part.form.reach, inner));
+        if wanted.start > wanted.end {
+            return None;
         }
-        let next = nearer.max(pixel.reach.start).min(pixel.reach.end);
-        pixel.known.step = next - pixel.t;
-        pixel.t = next;
-        if pixel.known.step == 0.0 || !nearer.is_finite() { Verdict::Lost } else { Verdict::Open }
-    }
-}
-
-impl Secants {
-    /// About where the root is by the last values, the newest of which is `value`, taken at t: by inverse linear and quadratic
-    /// interpolation (Brent, Algorithms for Minimization without Derivatives, 1973, chapter 4). `None` after the first one, and
-    /// when they tell of a slope that F does not have.
-    #[inline]
-    fn interpolate(&mut self, t: f64, value: f64, sight: &Sight) -> Option<f64> {
-        let [before, last] = self.values;
-        let secant = self.step / (value - last);
-        let bend = value * last * (secant - self.secant) / (value - before);
-        (self.values, self.secant) = ([last, value], secant);
-        let is_slope = (secant - sight.inverse).abs() <= sight.unevenness * sight.inverse.abs();
-        is_slope.then(|| {
-            let linear = value * secant;
-            // A bend is a small correction, and none is known before the third value.
-            if 2.0 * bend.abs() < linear.abs() { t - linear + bend } else { t - linear }
-        })
+        if reach.start > reach.end {
+            self.search_one((column, row), wanted, part.kernels);
+            return None;
+        }
+        Some([wanted, reach])
     }
 }
 

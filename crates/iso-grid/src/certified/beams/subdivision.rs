@@ -10,9 +10,9 @@ use rustc_hash::FxHashMap;
 use super::arcs::Bowed;
 use super::area::Area;
 use super::beam::{Beam, count_in};
+use super::bundle::Bundle;
 use super::form::{Form, Gradient};
 use super::grazing::Attempts;
-use super::monotone::Secants;
 use super::pixels::{Ended, Pixel};
 use super::rounding::Rounding;
 use super::seams::Approach;
@@ -123,7 +123,7 @@ pub(crate) struct Memory {
     pub(super) beams: Vec<Beam>,
     slabs: Vec<Slab>,
     pub(super) attempts: Attempts,
-    pub(super) pixels: Vec<Pixel<Secants>>,
+    pub(super) bundles: Vec<Bundle>,
     pub(super) bowed: Vec<Pixel<Bowed>>,
     pub(super) approaches: Vec<Approach>,
     /// How rays ended that were pursued.

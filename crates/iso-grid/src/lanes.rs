@@ -1,0 +1,123 @@
+//! Doubles side by side, as many as the processor computes with at once.
+
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
+
+use pulp::Simd;
+
+/// How many numbers stand in a row of memory: a multiple of all that any processor takes at once.
+pub(crate) const ROW: usize = 8;
+
+/// Numbers in memory, of which some at a time are computed with.
+pub(crate) type Row = [f64; ROW];
+
+/// Some numbers. Each operation is that of doubles, rounded to nearest, for each of them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lanes<S: Simd> {
+    simd: S,
+    numbers: S::f64s,
+}
+
+/// What was found out of some numbers, for each of them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mask<S: Simd> {
+    simd: S,
+    mask: S::m64s,
+}
+
+/// Into how many parts a row falls.
+#[inline(always)]
+pub(crate) const fn parts<S: Simd>() -> usize {
+    ROW / S::F64_LANES
+}
+
+impl<S: Simd> Lanes<S> {
+    /// The same number everywhere.
+    #[inline(always)]
+    pub(crate) fn all(simd: S, number: f64) -> Self {
+        Self { simd, numbers: simd.splat_f64s(number) }
+    }
+
+    /// A part of a row.
+    #[inline(always)]
+    pub(crate) fn of(simd: S, row: &Row, part: usize) -> Self {
+        Self { simd, numbers: S::as_simd_f64s(row).0[part] }
+    }
+
+    /// Puts the numbers in their place in a row.
+    #[inline(always)]
+    pub(crate) fn put(self, row: &mut Row, part: usize) {
+        S::as_mut_simd_f64s(row).0[part] = self.numbers;
+    }
+
+    #[inline(always)]
+    pub(crate) fn abs(self) -> Self {
+        Self { numbers: self.simd.abs_f64s(self.numbers), ..self }
+    }
+
+    #[inline(always)]
+    pub(crate) fn sqrt(self) -> Self {
+        Self { numbers: self.simd.sqrt_f64s(self.numbers), ..self }
+    }
+
+    /// Where the numbers are less than others. NaN never is.
+    #[inline(always)]
+    pub(crate) fn is_less(self, than: Self) -> Mask<S> {
+        Mask { simd: self.simd, mask: self.simd.less_than_f64s(self.numbers, than.numbers) }
+    }
+
+    /// Where the numbers are less than others or the same. NaN never is.
+    #[inline(always)]
+    pub(crate) fn is_at_most(self, other: Self) -> Mask<S> {
+        Mask { simd: self.simd, mask: self.simd.less_than_or_equal_f64s(self.numbers, other.numbers) }
+    }
+
+    /// Where the numbers are the same as others. NaN never is.
+    #[inline(always)]
+    pub(crate) fn is_same(self, other: Self) -> Mask<S> {
+        Mask { simd: self.simd, mask: self.simd.equal_f64s(self.numbers, other.numbers) }
+    }
+
+    /// The nearest numbers between two others; NaN where these are NaN.
+    #[inline(always)]
+    pub(crate) fn between(self, least: Self, most: Self) -> Self {
+        let raised = self.is_less(least).select(least, self);
+        most.is_less(raised).select(most, raised)
+    }
+}
+
+impl<S: Simd> Mask<S> {
+    /// The numbers of the first where this is so, and those of the second elsewhere.
+    #[inline(always)]
+    pub(crate) fn select(self, yes: Lanes<S>, no: Lanes<S>) -> Lanes<S> {
+        Lanes { numbers: self.simd.select_f64s(self.mask, yes.numbers, no.numbers), ..yes }
+    }
+
+    /// Whether this is so anywhere.
+    #[inline(always)]
+    pub(crate) fn is_anywhere(self) -> bool {
+        self.simd.first_true_m64s(self.mask) < S::F64_LANES
+    }
+}
+
+/// Implements an operator by what the processor does for all numbers at once.
+macro_rules! operators {
+    ($($of:ident: $operator:ident::$name:ident by $field:ident, $method:ident;)*) => {$(
+        impl<S: Simd> $operator for $of<S> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                Self { $field: self.simd.$method(self.$field, other.$field), ..self }
+            }
+        }
+    )*};
+}
+
+operators! {
+    Lanes: Add::add by numbers, add_f64s;
+    Lanes: Sub::sub by numbers, sub_f64s;
+    Lanes: Mul::mul by numbers, mul_f64s;
+    Lanes: Div::div by numbers, div_f64s;
+    Mask: BitAnd::bitand by mask, and_m64s;
+    Mask: BitOr::bitor by mask, or_m64s;
+}
