@@ -80,7 +80,8 @@ fn answer(
     normals: &mut [DVec3],
 ) {
     let Workspace { arch, scratch, counters, points, .. } = workspace;
-    counters.gradient_evaluations += arch.dispatch(Search { kernel, tile, asked, points, scratch, normals });
+    counters.gradient_evaluations += asked.iter().filter(|t| !t.is_nan()).count() as u64;
+    arch.dispatch(Search { kernel, tile, asked, points, scratch, normals });
 }
 
 /// The search for the normals of a tile.
@@ -94,13 +95,11 @@ struct Search<'a> {
 }
 
 impl WithSimd for Search<'_> {
-    /// How many gradients it took.
-    type Output = u64;
+    type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> u64 {
+    fn with_simd<S: Simd>(self, simd: S) {
         let Self { kernel, tile, asked, points, scratch, normals } = self;
-        let mut evaluations = 0;
         let mut units = [[0.0; ROW]; 4];
         let mut rows =
             (0..asked.len()).step_by(ROW).filter(|first| row_from(asked, *first).iter().any(|t| !t.is_nan()));
@@ -112,9 +111,8 @@ impl WithSimd for Search<'_> {
                 count += 1;
             }
             if count == 0 {
-                return evaluations;
+                return;
             }
-            evaluations += (count * ROW) as u64;
             for (first, coordinates) in firsts.iter().zip(points.rows(count)) {
                 tile.row_from(simd, *first).at(simd, &row_from(asked, *first), coordinates);
             }

@@ -1,5 +1,7 @@
 //! Pictures: what was found, pixel by pixel.
 
+use bytemuck::Zeroable;
+use bytemuck::allocation::try_zeroed_vec;
 use glam::DVec3;
 use iso_grid::{Counters, Outcome};
 use rayon::prelude::*;
@@ -128,22 +130,27 @@ impl Picture {
     /// The colour of unfinished pixels: black, which no lit surface and no background is.
     pub const UNFINISHED: [u8; 3] = [0; 3];
 
-    /// A picture with room for `layers`, all of it unfinished; `None` when memory does not suffice.
+    /// A picture with room for `layers`, no pixel of which means anything yet; `None` when memory does not suffice.
     pub(crate) fn with_room(size: Size, layers: Layers) -> Option<Self> {
         Some(Self {
             size,
-            color: filled(layers.color, size, Self::UNFINISHED)?,
-            depth: filled(layers.depth, size, f64::NEG_INFINITY)?,
-            normals: filled(layers.normals, size, DVec3::ZERO)?,
-            points: filled(layers.points, size, DVec3::NAN)?,
+            color: zeroed(layers.color, size)?,
+            depth: zeroed(layers.depth, size)?,
+            normals: zeroed(layers.normals, size)?,
+            points: zeroed(layers.points, size)?,
             statuses: filled(layers.statuses, size, Status::Unfinished)?,
             outcomes: filled(layers.outcomes, size, Outcome::Miss)?,
-            counts: StatusCounts { unfinished: size.pixels() as u64, ..StatusCounts::default() },
+            counts: StatusCounts::default(),
             counters: Counters::default(),
             trace_seconds: 0.0,
             shade_seconds: 0.0,
         })
     }
+}
+
+/// A layer of zeros. Memory is first touched by the threads that write to it.
+fn zeroed<T: Zeroable>(wanted: bool, size: Size) -> Option<Vec<T>> {
+    try_zeroed_vec(if wanted { size.pixels() } else { 0 }).ok()
 }
 
 /// A layer, filled by all threads: what takes time is that memory is first touched.

@@ -63,14 +63,17 @@ pub fn render(scene: &Scene<'_>, size: Size, progress: Progress<'_>) -> Result<P
     let bands = Band::all(&mut picture, TILE);
     let work = Mutex::new(Work::default());
     tiles(size).into_par_iter().try_for_each_init(Tile::default, |tile, area| {
-        if !tile.render(scene, size, area)? {
-            return Ok(());
+        let is_finished = tile.render(scene, size, area)?;
+        if !is_finished {
+            tile.mark_unfinished(layers);
         }
         let band = &bands[(area.row / TILE) as usize];
         tile.put(&mut band.lock().expect("no thread panics while it holds a band"), size);
-        let mut work = work.lock().expect("no thread panics while it holds the sums");
-        work.add(tile);
-        progress(work.pixels, size.pixels() as u64);
+        if is_finished {
+            let mut work = work.lock().expect("no thread panics while it holds the sums");
+            work.add(tile);
+            progress(work.pixels, size.pixels() as u64);
+        }
         Ok::<(), RenderError>(())
     })?;
     drop(bands);
@@ -122,6 +125,7 @@ struct Tile {
 impl Tile {
     /// Whether it was finished before work was stopped.
     fn render(&mut self, scene: &Scene<'_>, size: Size, area: Area) -> Result<bool, RenderError> {
+        self.area = area;
         let stop = scene.surface.stop();
         if stop.is_requested() {
             return Ok(false);
@@ -129,7 +133,6 @@ impl Tile {
         let mut watch = Stopwatch::start();
         let Self { workspace, outcomes, normals: found_normals, .. } = self;
         let rays = scene.camera.tile(area.column, area.row, area.width, area.height);
-        self.area = area;
         outcomes.resize(rays.len(), Outcome::Miss);
         workspace.counters = Counters::default();
         scene.tracer.trace_tile(workspace, rays, outcomes);
@@ -147,6 +150,18 @@ impl Tile {
         self.note(scene.plan.layers(), rays);
         self.shade = watch.lap();
         Ok(true)
+    }
+
+    /// Puts the marks of unfinished pixels in all layers.
+    fn mark_unfinished(&mut self, layers: Layers) {
+        let Area { width, height, .. } = self.area;
+        let count = |is_kept: bool| if is_kept { (width * height) as usize } else { 0 };
+        refill(&mut self.color, count(layers.color), Picture::UNFINISHED);
+        refill(&mut self.depth, count(layers.depth), f64::NEG_INFINITY);
+        refill(&mut self.normals, count(layers.normals), DVec3::ZERO);
+        refill(&mut self.points, count(layers.points), DVec3::NAN);
+        refill(&mut self.statuses, count(layers.statuses), Status::Unfinished);
+        refill(&mut self.outcomes, count(layers.outcomes), Outcome::Miss);
     }
 
     /// Colours all pixels.
@@ -211,6 +226,12 @@ impl Tile {
             row[column..][..width].copy_from_slice(pixels);
         }
     }
+}
+
+/// Puts so many times the same into a buffer.
+fn refill<T: Clone>(buffer: &mut Vec<T>, count: usize, value: T) {
+    buffer.clear();
+    buffer.resize(count, value);
 }
 
 /// Where on its ray something was found; `None` where nothing was.
