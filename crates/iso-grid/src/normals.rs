@@ -1,7 +1,7 @@
 //! Normals of the surface where rays meet it.
 
 use glam::DVec3;
-use iso_expr::{BatchKernel, CompileError, Scratch};
+use iso_expr::{BatchKernel, CompileError, Interval, Scratch};
 use pulp::{Simd, WithSimd};
 
 use crate::batch::PointBatch;
@@ -38,13 +38,15 @@ pub fn normals(
     if !outcomes.iter().any(|outcome| matches!(outcome, Outcome::Hit(_) | Outcome::Touch(_))) {
         return Ok(());
     }
-    let kernel = &**surface.gradients()?;
+    let everywhere = surface.gradients()?;
     let mut asked = std::mem::take(&mut workspace.asked);
     asked.clear();
     asked.extend(
         outcomes.iter().map(|outcome| if let Outcome::Hit(hit) = outcome { hit.t } else { f64::NAN }),
     );
-    answer(kernel, workspace, tile, &asked, normals);
+    let count = asked.iter().filter(|t| !t.is_nan()).count();
+    let there = surface.gradients_on(count, || around(tile, &asked));
+    answer(&**there.as_ref().unwrap_or(everywhere), workspace, tile, &asked, normals);
     let mut others: Vec<Met> = Vec::new();
     for (place, outcome) in outcomes.iter().enumerate() {
         match *outcome {
@@ -64,11 +66,23 @@ pub fn normals(
         for met in &others {
             asked[met.place] = met.in_front(&tile, approach);
         }
-        answer(kernel, workspace, tile, &asked, normals);
+        answer(&**everywhere, workspace, tile, &asked, normals);
         others.retain(|met| normals[met.place].is_nan());
     }
     workspace.asked = asked;
     Ok(())
+}
+
+/// A box around the points of a tile's rays at these t, where there are any.
+fn around(tile: Tile<'_>, asked: &[f64]) -> [Interval; 3] {
+    let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for (t, ray) in asked.iter().zip(tile.rays()) {
+        if !t.is_nan() {
+            let point = ray.at(*t);
+            (lo, hi) = (lo.min(point), hi.max(point));
+        }
+    }
+    [0, 1, 2].map(|axis| Interval { lo: lo[axis], hi: hi[axis] })
 }
 
 /// Puts the normals in their places that are asked for: at these t of the rays of a tile, NaN where none is.
