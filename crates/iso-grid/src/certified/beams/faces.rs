@@ -109,8 +109,11 @@ impl Subdivision<'_> {
     /// What a function of which F is made comes to on a part: a face if it is smooth.
     fn made(&mut self, part: &Part, kernels: u32) -> Option<Made> {
         let (t, center) = self.center(part);
-        let jet = self.jet_at(center, kernels)?;
-        if let Some(gradient) = self.gradient_over(part, kernels) {
+        let bounds = self.beam(part.beam).bounds_in_space(part.form.reach);
+        let both = [(center, center), bounds];
+        let [jet, over_all] = self.enclose_all(kernels, Kernel::GradientEnclosures, both)?;
+        let jet = jet.map(|found| found.interval);
+        if let Some(gradient) = Gradient::new(over_all) {
             let form = Form::new(self.beam(part.beam), part.form.reach, (t, center), jet[0], &gradient);
             if let Some(sign) = form.sign() {
                 return Some(Made::Signed(sign));
@@ -124,12 +127,6 @@ impl Subdivision<'_> {
             }
         }
         self.made_of_several(part, kernels)
-    }
-
-    /// The gradients of a function over a part, where it is smooth.
-    fn gradient_over(&mut self, part: &Part, kernels: u32) -> Option<Gradient> {
-        let bounds = self.beam(part.beam).bounds_in_space(part.form.reach);
-        Gradient::new(self.enclose_one(kernels, Kernel::GradientEnclosures, bounds)?)
     }
 
     /// A ray that is to meet a face in a stretch, about how far from the middle of the part that is, and whether it is doubtful.

@@ -249,16 +249,26 @@ impl<'a> Subdivision<'a> {
         &mut self,
         number: u32,
         kernel: Kernel,
-        (lo, hi): (DVec3, DVec3),
+        bounds: (DVec3, DVec3),
     ) -> Option<[Decorated; N]> {
+        self.enclose_all(number, kernel, [bounds]).map(|[found]| found)
+    }
+
+    /// The same over several boxes at once.
+    pub(super) fn enclose_all<const N: usize, const COUNT: usize>(
+        &mut self,
+        number: u32,
+        kernel: Kernel,
+        bounds: [(DVec3, DVec3); COUNT],
+    ) -> Option<[[Decorated; N]; COUNT]> {
         let kernels = &self.kernels[number as usize];
         let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
-        boxes.replace(std::iter::once((&lo, &hi)));
+        boxes.replace(bounds.iter().map(|(lo, hi)| (lo, hi)));
         boxes.evaluate(kernels.over_boxes(kernel)?, scratch, N);
-        counters.box_evaluations += 1;
-        counters.operations += kernels.charge(kernel, 1);
-        self.work_left = self.work_left.saturating_sub(1);
-        Some(std::array::from_fn(|output| boxes.decorated(output, 0)))
+        counters.box_evaluations += COUNT as u64;
+        counters.operations += kernels.charge(kernel, COUNT);
+        self.work_left = self.work_left.saturating_sub(COUNT as u64);
+        Some(std::array::from_fn(|place| std::array::from_fn(|output| boxes.decorated(output, place))))
     }
 
     /// Whether some ray of `area` is still followed.
