@@ -28,7 +28,7 @@ impl Answers {
         outcomes: Vec<Outcome>,
     ) -> Result<Self, CompileError> {
         let mut found = vec![DVec3::NAN; rays.len()];
-        normals(surface, workspace, rays.into(), &outcomes, &mut found)?;
+        normals(surface, None, workspace, rays.into(), &outcomes, &mut found)?;
         Ok(Self { outcomes, normals: found })
     }
 }

@@ -4,6 +4,7 @@
 //! A [`Surface`] offers the kernels of F − C, whatever engine made them. A [`Tracer`] is a method of intersection: it says
 //! for every [`Ray`] how its search for the first root inside the [`Region`] ended, an [`Outcome`].
 
+mod area;
 mod batch;
 mod certified;
 mod counters;

@@ -1,21 +1,28 @@
 //! Normals of the surface where rays meet it.
 
 use glam::DVec3;
-use iso_expr::{BatchKernel, CompileError, Interval, Scratch};
+use iso_expr::{BatchKernel, CompileError, Scratch};
 use pulp::{Simd, WithSimd};
 
+use crate::area::Area;
 use crate::batch::PointBatch;
 use crate::lanes::{Lanes, ROW, Row, parts};
-use crate::{Hit, Outcome, Span, Surface, Tile, Workspace};
+use crate::{Hit, Outcome, Span, Surface, Tile, Tracer, Workspace};
 
 /// How many rows of points are asked about by one call of the kernel.
 const ROWS: usize = 32;
+
+/// Blocks of so many columns and rows may be answered by a shorter formula.
+const BLOCK: usize = 16;
+/// They are when so many normals are asked for there.
+const MANY: usize = 64;
+
 /// The distances in front of a point at which its normal is looked for when it has none itself, as parts of the distance
 /// that the ray has come: 2⁻⁴⁰, and from there on in powers of 8 up to 2⁻¹⁰.
 const APPROACH: [i32; 11] = [-40, -37, -34, -31, -28, -25, -22, -19, -16, -13, -10];
 
-/// The unit normal ∇F/|∇F| at each hit and touch, towards larger F whichever way the ray comes; NaN for other outcomes.
-/// Both slices hold something for each ray of the tile.
+/// The unit normal ∇F/|∇F| at each hit and touch that `tracer` found, towards larger F whichever way the ray comes; NaN for other
+/// outcomes. Both slices hold something for each ray of the tile.
 ///
 /// At a touch, and where the gradient vanishes or is no finite vector, the normal is a limit: that of the points in front of the hit, on
 /// the side that the ray comes from, the nearest that has one. So a double root such as (x² + y² + z² − 1)² = 0 has the
@@ -25,6 +32,7 @@ const APPROACH: [i32; 11] = [-40, -37, -34, -31, -28, -25, -22, -19, -16, -13, -
 /// When the engine cannot compile the gradient.
 pub fn normals(
     surface: &Surface,
+    tracer: Option<&dyn Tracer>,
     workspace: &mut Workspace,
     tile: Tile<'_>,
     outcomes: &[Outcome],
@@ -44,9 +52,12 @@ pub fn normals(
     asked.extend(
         outcomes.iter().map(|outcome| if let Outcome::Hit(hit) = outcome { hit.t } else { f64::NAN }),
     );
-    let count = asked.iter().filter(|t| !t.is_nan()).count();
-    let there = surface.gradients_on(count, || around(tile, &asked));
-    answer(&**there.as_ref().unwrap_or(everywhere), workspace, tile, &asked, normals);
+    let all = Area { column: 0, row: 0, width: tile.width(), height: tile.height() };
+    if let Some(tracer) = tracer {
+        all.blocks(BLOCK)
+            .for_each(|block| answer_block(tracer, workspace, (tile, block), &mut asked, normals));
+    }
+    answer(&**everywhere, workspace, tile, &asked, normals);
     let mut others: Vec<Met> = Vec::new();
     for (place, outcome) in outcomes.iter().enumerate() {
         match *outcome {
@@ -73,16 +84,41 @@ pub fn normals(
     Ok(())
 }
 
-/// A box around the points of a tile's rays at these t, where there are any.
-fn around(tile: Tile<'_>, asked: &[f64]) -> [Interval; 3] {
-    let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for (t, ray) in asked.iter().zip(tile.rays()) {
-        if !t.is_nan() {
-            let point = ray.at(*t);
-            (lo, hi) = (lo.min(point), hi.max(point));
+/// Answers what is asked for in a block, and asks for it no more, where the tracer knows a shorter formula.
+fn answer_block(
+    tracer: &dyn Tracer,
+    workspace: &mut Workspace,
+    (tile, block): (Tile<'_>, Area),
+    asked: &mut [f64],
+    normals: &mut [DVec3],
+) {
+    let Some((lo, hi)) = around(tile, block, asked) else { return };
+    let Some(kernel) = tracer.gradients_on(lo, hi) else { return };
+    let mut here = std::mem::take(&mut workspace.asked_here);
+    here.clear();
+    here.resize(asked.len(), f64::NAN);
+    for row in block.rows() {
+        let start = row * tile.width() + block.column;
+        let places = start..start + block.width;
+        here[places.clone()].swap_with_slice(&mut asked[places]);
+    }
+    answer(&*kernel, workspace, tile, &here, normals);
+    workspace.asked_here = here;
+}
+
+/// The corners of a box around the points of a block at which normals are asked for, if there are many.
+fn around(tile: Tile<'_>, block: Area, asked: &[f64]) -> Option<(DVec3, DVec3)> {
+    let (mut count, mut lo, mut hi) = (0, DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for row in block.rows() {
+        for column in block.columns() {
+            let t = asked[row * tile.width() + column];
+            if !t.is_nan() {
+                let point = tile.ray(column, row).at(t);
+                (count, lo, hi) = (count + 1, lo.min(point), hi.max(point));
+            }
         }
     }
-    [0, 1, 2].map(|axis| Interval { lo: lo[axis], hi: hi[axis] })
+    (count >= MANY).then_some((lo, hi))
 }
 
 /// Puts the normals in their places that are asked for: at these t of the rays of a tile, NaN where none is.

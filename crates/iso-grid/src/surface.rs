@@ -10,9 +10,6 @@ use crate::{Region, Stop};
 /// Differentiating a program takes about so much longer than shortening its derivative on a box.
 const MUCH_SHORTER: usize = 6;
 
-/// Gradients at fewer points are taken of the whole formula.
-const MANY_POINTS: usize = 256;
-
 /// Formulas of more operations are not differentiated twice.
 const DIFFERENTIATED_TWICE: usize = 100;
 
@@ -226,22 +223,6 @@ impl Surface {
     /// When the engine cannot compile it.
     pub fn gradients(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
         compiled(&self.gradient_batch, || self.engine.batch(self.program_of(Kernel::Gradients)))
-    }
-
-    /// The same at so many points of a box, where fewer operations do; `None` where finding them out does not pay. The box is
-    /// asked for when it may.
-    pub(crate) fn gradients_on(
-        &self,
-        points: usize,
-        domain: impl FnOnce() -> [Interval; 3],
-    ) -> Option<Arc<dyn BatchKernel>> {
-        let program = self.program_of(Kernel::Gradients);
-        if points < MANY_POINTS || !self.value.has_branches() {
-            return None;
-        }
-        let shortened = program.shortened(domain())?;
-        let pays = MUCH_SHORTER * shortened.nodes().len() <= program.nodes().len();
-        pays.then(|| self.engine.for_few_runs().batch(&shortened).ok()).flatten()
     }
 
     /// F − C over boxes.

@@ -1,6 +1,9 @@
 //! What every method of intersection offers.
 
-use iso_expr::Scratch;
+use std::sync::Arc;
+
+use glam::DVec3;
+use iso_expr::{BatchKernel, Scratch};
 use pulp::Arch;
 
 use crate::batch::{BoxBatch, PointBatch};
@@ -46,6 +49,13 @@ pub trait Tracer: Send + Sync {
         self.trace(workspace, &tile.rays().collect::<Vec<_>>(), outcomes);
     }
 
+    /// F − C and its three derivatives at points of the box with these corners, where the method knows a kernel that takes much
+    /// less time there than the one that holds everywhere, to the same bits.
+    fn gradients_on(&self, lo: DVec3, hi: DVec3) -> Option<Arc<dyn BatchKernel>> {
+        let _ = (lo, hi);
+        None
+    }
+
     /// What preprocessing took.
     fn preprocessing(&self) -> Counters;
 }
@@ -61,6 +71,8 @@ pub struct Workspace {
     pub(crate) arch: Arch,
     /// Where normals are asked for along the rays of a tile.
     pub(crate) asked: Vec<f64>,
+    /// The same in a part of the tile.
+    pub(crate) asked_here: Vec<f64>,
     /// Points for the kernels, and their values.
     pub(crate) points: PointBatch,
     /// Points whose gradients are asked for beside their values.

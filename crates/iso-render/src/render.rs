@@ -142,7 +142,7 @@ impl Tile {
         self.trace = watch.lap();
         if scene.plan.runs(Pass::Normals) {
             found_normals.resize(rays.len(), DVec3::NAN);
-            normals(scene.surface, workspace, rays, outcomes, found_normals)?;
+            normals(scene.surface, Some(scene.tracer), workspace, rays, outcomes, found_normals)?;
         }
         if scene.plan.runs(Pass::Shade) {
             self.shade(scene.shading, rays, size);

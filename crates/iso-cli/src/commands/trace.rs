@@ -84,7 +84,7 @@ fn follow(surface: &Surface, tracer: &dyn Tracer, rays: &[Ray]) -> Result<Vec<Op
             if surface.stop().is_requested() {
                 return Ok(());
             }
-            normals(surface, workspace, rays.into(), &outcomes, &mut found_normals)?;
+            normals(surface, None, workspace, rays.into(), &outcomes, &mut found_normals)?;
             for ((place, outcome), normal) in followed.iter_mut().zip(outcomes).zip(found_normals) {
                 *place = Some((outcome, normal));
             }

@@ -19,6 +19,9 @@ pub(super) const BATCH: usize = 8;
 /// About how much longer an operation takes in kernels that are made for few runs.
 const INTERPRETING: u64 = 2;
 
+/// The same at points, where it is interpreted.
+const MUCH_LESS: u64 = 4;
+
 /// What formulas of no more operations come to in some places is compiled, if it is asked for often enough. Measured: a model of 676
 /// operations is drawn in three quarters of the time with it; one of 997, which comes to too many formulas, takes twice as long.
 const SMALL: u64 = 800;
@@ -256,6 +259,12 @@ impl Kernels {
     /// F at points.
     pub(super) fn points(&self) -> &dyn BatchKernel {
         &**compiled(self.formula.surface().values())
+    }
+
+    /// F and its gradient at points, made for few runs, if that takes less time than those of `others` as native code.
+    pub(super) fn gradients_at_points(&self, others: &Self) -> Option<Arc<dyn BatchKernel>> {
+        let [these, those] = [self, others].map(|kernels| kernels.operations(Kernel::Gradients));
+        (MUCH_LESS * these <= those).then(|| Arc::clone(compiled(self.formula.surface.gradients())))
     }
 
     /// F over boxes.

@@ -16,7 +16,8 @@ mod walk;
 
 use std::sync::Arc;
 
-use iso_expr::CompileError;
+use glam::DVec3;
+use iso_expr::{BatchKernel, CompileError};
 
 use crate::{Counters, Outcome, Ray, Region, Span, Stop, Surface, Tile, Tracer, Workspace};
 pub(crate) use beams::Memory;
@@ -162,6 +163,13 @@ impl Tracer for Certified {
             Some(subdivision) => subdivision.run(),
             None => self.trace(workspace, &tile.rays().collect::<Vec<_>>(), outcomes),
         }
+    }
+
+    fn gradients_on(&self, lo: DVec3, hi: DVec3) -> Option<Arc<dyn BatchKernel>> {
+        self.places
+            .are_asked()
+            .then(|| self.places.kernels(lo, hi).gradients_at_points(&self.kernels))
+            .flatten()
     }
 
     fn preprocessing(&self) -> Counters {

@@ -57,7 +57,7 @@ fn check(surface: &Surface, region: Region, expected: impl Fn(&Ray) -> Option<(f
         let mut found = vec![DVec3::ZERO; rays.len()];
         tracer.trace(&mut workspace, &rays, &mut outcomes);
         workspace.counters.gradient_evaluations = 0;
-        normals(surface, &mut workspace, rays.as_slice().into(), &outcomes, &mut found).unwrap();
+        normals(surface, None, &mut workspace, rays.as_slice().into(), &outcomes, &mut found).unwrap();
         let mut hits = 0;
         for (number, ray) in rays.iter().enumerate() {
             match (expected(ray), outcomes[number]) {
@@ -122,8 +122,15 @@ fn torus_from_above() {
             let height = (tube * tube - (radius - ring).powi(2)).sqrt();
             assert!((the_hit(outcome).t - (5.0 - height) / 2.0).abs() < 1e-14);
             let mut found = [DVec3::ZERO];
-            normals(&surface, &mut Workspace::default(), [ray].as_slice().into(), &[outcome], &mut found)
-                .unwrap();
+            normals(
+                &surface,
+                None,
+                &mut Workspace::default(),
+                [ray].as_slice().into(),
+                &[outcome],
+                &mut found,
+            )
+            .unwrap();
             let side = (radius - ring) / tube;
             let expected = DVec3::new(side * angle.cos(), side * angle.sin(), height / tube);
             assert!(found[0].distance(expected) < 1e-12);

@@ -171,6 +171,7 @@ fn normal_along_x(value: Function, gradient: fn(DVec3) -> DVec3, outcome: Outcom
     let mut found = [DVec3::ZERO];
     normals(
         &surface(value, gradient),
+        None,
         &mut Workspace::default(),
         [ray].as_slice().into(),
         &[outcome],

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use iso_expr::Interval;
 
-use super::area::Area;
 use super::spread::Spread;
+use crate::area::Area;
 use crate::{Region, Span, Tile};
 
 /// Components beyond this size are left to rays one by one: below it nothing here overflows.

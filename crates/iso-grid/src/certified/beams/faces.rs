@@ -6,11 +6,11 @@
 use iso_expr::Extreme;
 
 use super::arcs::{Arc, Bowed, ways};
-use super::area::Area;
 use super::bend::{Bend, Course};
 use super::form::{Form, Gradient};
 use super::pixels::Pixel;
 use super::subdivision::{Part, Subdivision};
+use crate::area::Area;
 use crate::{Kernel, Span};
 
 /// More functions are left to smaller parts, where fewer of them matter.

@@ -16,7 +16,6 @@
 //! whatever beams it goes through, so that the first root found is its first root.
 
 mod arcs;
-mod area;
 mod beam;
 mod bend;
 mod bundle;

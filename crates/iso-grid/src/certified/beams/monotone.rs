@@ -1,12 +1,12 @@
 //! The roots of single rays of a beam along which F is monotone.
 
-use super::area::Area;
 use super::beam::Beam;
 use super::bundle::{AT_ONCE, Bundle, Pursuit, Sight, Start};
 use super::form::{Form, Model, ROUNDING};
 use super::pixels::{Ended, halves_from};
 use super::rounding::Rounding;
 use super::subdivision::{Part, Subdivision};
+use crate::area::Area;
 use crate::certified::clip::Clip;
 use crate::lanes::ROW;
 use crate::{Kernel, Span, Workspace};

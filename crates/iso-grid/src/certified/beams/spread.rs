@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::area::Area;
+use crate::area::Area;
 use crate::raster::Rays;
 use crate::{Raster, Tile};
 

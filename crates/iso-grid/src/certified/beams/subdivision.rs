@@ -8,7 +8,6 @@ use iso_expr::{Decorated, Extreme, Interval};
 use rustc_hash::FxHashMap;
 
 use super::arcs::Bowed;
-use super::area::Area;
 use super::beam::{Beam, count_in};
 use super::bundle::Bundle;
 use super::form::{Form, Gradient};
@@ -16,6 +15,7 @@ use super::grazing::Attempts;
 use super::pixels::{Ended, Pixel};
 use super::rounding::Rounding;
 use super::seams::Approach;
+use crate::area::Area;
 use crate::certified::Certified;
 use crate::certified::cells::Cell;
 use crate::certified::classify::free_of_zero;
