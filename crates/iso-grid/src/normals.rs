@@ -21,8 +21,10 @@ const MANY: usize = 64;
 /// that the ray has come: 2⁻⁴⁰, and from there on in powers of 8 up to 2⁻¹⁰.
 const APPROACH: [i32; 11] = [-40, -37, -34, -31, -28, -25, -22, -19, -16, -13, -10];
 
-/// The unit normal ∇F/|∇F| at each hit and touch that `tracer` found, towards larger F whichever way the ray comes; NaN for other
-/// outcomes. Both slices hold something for each ray of the tile.
+/// The unit normal ∇F/|∇F| at each hit and touch, towards larger F whichever way the ray comes; NaN for other outcomes.
+/// Both slices hold something for each ray of the tile.
+///
+/// A `tracer` for the surface may know [shorter formulas](Tracer::gradients_on) around neighbouring rays, which give the same normals.
 ///
 /// At a touch, and where the gradient vanishes or is no finite vector, the normal is a limit: that of the points in front of the hit, on
 /// the side that the ray comes from, the nearest that has one. So a double root such as (x² + y² + z² − 1)² = 0 has the
@@ -52,10 +54,11 @@ pub fn normals(
     asked.extend(
         outcomes.iter().map(|outcome| if let Outcome::Hit(hit) = outcome { hit.t } else { f64::NAN }),
     );
-    let all = Area { column: 0, row: 0, width: tile.width(), height: tile.height() };
-    if let Some(tracer) = tracer {
-        all.blocks(BLOCK)
-            .for_each(|block| answer_block(tracer, workspace, (tile, block), &mut asked, normals));
+    if let (Some(tracer), true) = (tracer, surface.program().has_branches()) {
+        let all = Area { column: 0, row: 0, width: tile.width(), height: tile.height() };
+        for block in all.blocks(BLOCK) {
+            answer_block(tracer, workspace, (tile, block), &mut asked, normals);
+        }
     }
     answer(&**everywhere, workspace, tile, &asked, normals);
     let mut others: Vec<Met> = Vec::new();
