@@ -2,22 +2,21 @@
 
 use std::collections::HashMap;
 use std::mem::offset_of;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{AbiParam, InstBuilder, MemFlagsData, Signature, Value, types};
 use cranelift_frontend::FunctionBuilder;
 use iso_expr::engine::{Boxes, Enclosures};
-use iso_expr::{
-    BoxKernel, CompileError, Decorated, Decoration, Engine, Interpreter, Node, Operation, Program, Scratch,
-};
+use iso_expr::{BoxKernel, Decorated, Decoration, Engine, Node, Operation, Program, Scratch};
 
+use crate::assembled::Assembler;
 use crate::code::{Blueprint, Compiled};
-use crate::domain::Domain;
+use crate::domain::{Assumption, Domain};
 use crate::elementary;
 use crate::enclosures::{self, Enclosure};
 use crate::host::{self, Limits};
-use crate::lanes::{Lanes, Writer};
+use crate::lanes::{Lanes, Mask, Writer};
 use crate::symbols::Calls;
 use crate::trampoline::Room;
 
@@ -39,8 +38,9 @@ pub(crate) struct Places {
 }
 
 /// The places; how many boxes there are, at least one; and how far the second box of a round stands from the first: one
-/// place, or none where there is just one box.
-type Enclose = unsafe extern "C" fn(&Places, usize, usize);
+/// place, or none where there is just one box. Zero if what was [assumed](Assumption) holds for all boxes; else what was written
+/// means nothing.
+type Enclose = unsafe extern "C" fn(&Places, usize, usize) -> u64;
 
 /// A kernel over batches of boxes, as native code.
 pub(crate) struct NativeBoxes {
@@ -48,25 +48,40 @@ pub(crate) struct NativeBoxes {
     outputs: usize,
     /// The [reach](Domain::reach) of the boxes for which the code was made.
     reach: f64,
-    /// For all others: empty, unbounded and huge ones.
-    interpreted: Arc<dyn BoxKernel>,
+    program: Program,
+    assembler: Assembler,
+    /// For all others, empty, unbounded and huge ones, and for those of which too much was assumed: assembled when first needed.
+    otherwise: OnceLock<Arc<dyn BoxKernel>>,
 }
 
 impl NativeBoxes {
     pub(crate) fn new(
-        blueprint: &BoxBlueprint<'_>,
+        BoxBlueprint { program, domain }: &BoxBlueprint<'_>,
         compiled: Compiled<Enclose>,
-    ) -> Result<Self, CompileError> {
-        let BoxBlueprint { program, domain } = blueprint;
-        let interpreted = Interpreter.boxes(program)?;
-        Ok(Self { compiled, outputs: program.outputs().len(), reach: domain.reach, interpreted })
+        assembler: Assembler,
+    ) -> Self {
+        Self {
+            compiled,
+            outputs: program.outputs().len(),
+            reach: domain.reach,
+            program: (*program).clone(),
+            assembler,
+            otherwise: OnceLock::new(),
+        }
+    }
+
+    /// The kernel for any boxes.
+    fn otherwise(&self) -> &dyn BoxKernel {
+        &**self.otherwise.get_or_init(|| {
+            self.assembler.boxes(&self.program).expect("what cannot be assembled is interpreted")
+        })
     }
 }
 
 impl BoxKernel for NativeBoxes {
     fn evaluate(&self, scratch: &mut Scratch, boxes: Boxes<'_>, enclosures: Enclosures<'_>) {
         if !Domain::holds_all(self.reach, boxes) {
-            return self.interpreted.evaluate(scratch, boxes, enclosures);
+            return self.otherwise().evaluate(scratch, boxes, enclosures);
         }
         let Enclosures { lo, hi, decoration } = enclosures;
         let count = boxes.lo[0].len();
@@ -89,7 +104,10 @@ impl BoxKernel for NativeBoxes {
         let second = count.min(PAIR) - 1;
         // SAFETY: at all places there are `count` boxes, and room for `count` enclosures of each output; what is written is
         // borrowed mutably, so that it overlaps nothing else.
-        unsafe { (self.compiled.function)(&places, count, second) }
+        let violated = unsafe { (self.compiled.function)(&places, count, second) };
+        if violated != 0 {
+            self.otherwise().evaluate(scratch, boxes, Enclosures { lo, hi, decoration });
+        }
     }
 }
 
@@ -113,6 +131,7 @@ impl Blueprint for BoxBlueprint<'_> {
 
     fn sign(&self, signature: &mut Signature) {
         signature.params.extend([AbiParam::new(types::I64); 3]);
+        signature.returns.push(AbiParam::new(types::I64));
     }
 
     fn write(&self, builder: &mut FunctionBuilder<'_>, calls: &mut Calls<'_>) {
@@ -125,20 +144,22 @@ impl Blueprint for BoxBlueprint<'_> {
         let first = builder.ins().iconst(types::I64, 0);
         let (round, end) = (builder.create_block(), builder.create_block());
         let index = builder.append_block_param(round, types::I64);
-        builder.ins().jump(round, &[first.into()]);
+        let violated = builder.append_block_param(round, types::I64);
+        builder.ins().jump(round, &[first.into(), first.into()]);
 
         builder.switch_to_block(round);
         let mut round_of_boxes =
-            Round { writer: Writer::new(builder, Lanes::Two), places, count, index, second };
-        round_of_boxes.write(calls, self.program, &self.domain.ranges);
+            Round { writer: Writer::new(builder, Lanes::Two), places, count, index, second, violated };
+        round_of_boxes.write(calls, self.program, &self.domain);
+        let violated = round_of_boxes.violated;
         let next = builder.ins().iadd_imm_s(index, PAIR as i64);
         let beyond = builder.ins().icmp(IntCC::UnsignedGreaterThan, next, last);
         let next = builder.ins().select(beyond, last, next);
         let done = builder.ins().icmp(IntCC::Equal, index, last);
-        builder.ins().brif(done, end, &[], round, &[next.into()]);
+        builder.ins().brif(done, end, &[], round, &[next.into(), violated.into()]);
 
         builder.switch_to_block(end);
-        builder.ins().return_(&[]);
+        builder.ins().return_(&[violated]);
     }
 
     unsafe fn function(&self, start: *const u8) -> Self::Function {
@@ -156,15 +177,18 @@ struct Round<'a, 'b> {
     index: Value,
     /// How far the second one stands from it.
     second: Value,
+    /// Not zero if an assumption does not hold.
+    violated: Value,
 }
 
 impl Round<'_, '_> {
-    fn write(&mut self, calls: &mut Calls<'_>, program: &Program, ranges: &[Decorated]) {
+    fn write(&mut self, calls: &mut Calls<'_>, program: &Program, domain: &Domain) {
         let is_large = program.operations() > LARGEST_WITH_LASTING_CONSTANTS;
         let mut room = None;
         let mut waves = HashMap::new();
         let mut enclosures: Vec<Enclosure> = Vec::with_capacity(program.nodes().len());
-        for (node, range) in program.nodes().iter().zip(ranges) {
+        let known = domain.ranges.iter().zip(&domain.assumptions);
+        for (node, (range, assumption)) in program.nodes().iter().zip(known) {
             if is_large {
                 self.writer.forget_constants();
             }
@@ -184,6 +208,9 @@ impl Round<'_, '_> {
                 }
                 Node::Apply(operation, operands) => {
                     let operands = operands.map(|id| enclosures[id.index()]);
+                    if let Some(assumption) = assumption {
+                        self.check(*assumption, operands[assumption.operand]);
+                    }
                     let written = enclosures::apply(&mut self.writer, *operation, operands, *range);
                     written.unwrap_or_else(|| {
                         let room = room.get_or_insert_with(|| Room::new(&mut self.writer));
@@ -198,6 +225,16 @@ impl Round<'_, '_> {
             self.store(enclosures[output.index()], place);
             place = self.writer.builder.ins().iadd(place, self.count);
         }
+    }
+
+    /// Notes whether an assumption does not hold for an operand.
+    fn check(&mut self, assumption: Assumption, operand: Enclosure) {
+        let end = if operand.range.interval.hi > 0.0 { operand.lo } else { operand.minus_hi };
+        let least = self.writer.constant(assumption.least);
+        let Mask(is_violated) = self.writer.compare(FloatCC::LessThan, end, least);
+        let is_anywhere = self.writer.builder.ins().vany_true(is_violated);
+        let is_anywhere = self.writer.builder.ins().uextend(types::I64, is_anywhere);
+        self.violated = self.writer.builder.ins().bor(self.violated, is_anywhere);
     }
 
     /// The boxes' extents along an axis.

@@ -1,7 +1,9 @@
 //! What is known of a program's values before any box is seen: their enclosures over the largest boxes that a kernel takes.
 
 use iso_expr::engine::Boxes;
-use iso_expr::{Decorated, Decoration, Extension, Interval, Node, Program};
+use iso_expr::{Decorated, Decoration, Extension, Interval, Node, Operation, Program};
+
+use Decoration::Common;
 
 /// Boxes that reach no farther from the origin than some distance, and what that says of a program.
 ///
@@ -10,8 +12,48 @@ use iso_expr::{Decorated, Decoration, Extension, Interval, Node, Program};
 pub(crate) struct Domain {
     /// No end of a box is farther from zero.
     pub(crate) reach: f64,
-    /// The enclosure of each of the program's nodes over the domain.
+    /// The enclosure of each of the program's nodes over the domain, as far as what is assumed of it holds.
     pub(crate) ranges: Vec<Decorated>,
+    /// What is assumed of the operands of each node.
+    pub(crate) assumptions: Vec<Option<Assumption>>,
+}
+
+/// What makes a result common, though it is not for all that an operand may be. Each box tells whether it holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Assumption {
+    /// The number of the operand.
+    pub(crate) operand: usize,
+    /// On the side of zero on which it is, or is to be, it is at least so far from zero.
+    pub(crate) least: f64,
+}
+
+/// A divisor that is farther from zero leaves quotients far from overflowing; one that is nearer has a pole next to it.
+const LEAST_DIVISOR: f64 = 1.0 / (1u64 << 60) as f64;
+
+impl Assumption {
+    /// What is to be assumed of common operands, if anything.
+    fn about(operation: Operation, operands: [Decorated; 3]) -> Option<Self> {
+        let [a, b, _] = operands.map(|operand| operand.interval);
+        if operands[..operation.arity()].iter().any(|operand| operand.decoration != Common) {
+            return None;
+        }
+        match operation {
+            Operation::Divide if b.contains_zero() && Sign::of(b) != Sign::Any => {
+                Some(Self { operand: 1, least: LEAST_DIVISOR })
+            }
+            Operation::SquareRoot if a.lo < 0.0 && a.hi > 0.0 => Some(Self { operand: 0, least: 0.0 }),
+            _ => None,
+        }
+        .filter(|assumption| operands[assumption.operand].interval.magnitude() > LEAST_DIVISOR)
+    }
+
+    /// The operand as far as it holds.
+    fn narrowed(self, Decorated { interval: Interval { lo, hi }, decoration }: Decorated) -> Decorated {
+        let least = self.least;
+        let interval =
+            if hi > 0.0 { Interval { lo: lo.max(least), hi } } else { Interval { lo, hi: -least } };
+        Decorated { interval, decoration }
+    }
 }
 
 /// The reaches that are considered, as powers of two. Products of many factors overflow over large domains, so that nothing is
@@ -21,27 +63,62 @@ const REACHES: [i32; 4] = [128, 64, 32, 16];
 impl Domain {
     /// The domain over which most values of `program` are common; of several the largest.
     pub(crate) fn of(program: &Program) -> Self {
-        let mut domains = REACHES.map(|exponent| {
-            let reach = 2f64.powi(exponent);
-            Self { reach, ranges: ranges(program, reach) }
+        let domains = [false, true].into_iter().flat_map(|assumes| {
+            REACHES.map(|exponent| Self::reaching(program, 2f64.powi(exponent), assumes))
         });
-        // The first one among equals.
-        domains.sort_by_key(|domain| std::cmp::Reverse(domain.common()));
-        let [best, ..] = domains;
-        best
+        // The first one among equals, so that nothing is assumed in vain.
+        domains
+            .reduce(|best, next| if next.common() > best.common() { next } else { best })
+            .expect("there are several reaches")
+    }
+
+    /// The domain of a reach, with assumptions or without.
+    fn reaching(program: &Program, reach: f64, assumes: bool) -> Self {
+        let count = program.nodes().len();
+        let mut domain =
+            Self { reach, ranges: Vec::with_capacity(count), assumptions: Vec::with_capacity(count) };
+        for node in program.nodes() {
+            domain.add(node, assumes);
+        }
+        domain
+    }
+
+    /// Encloses the next node.
+    fn add(&mut self, node: &Node, assumes: bool) {
+        let mut assumption = None;
+        let range = match node {
+            Node::Variable(_) => Decorated::argument(-self.reach, self.reach),
+            Node::Constant(constant) => Decorated::constant(constant.enclosure()),
+            Node::Apply(operation, operands) => {
+                let mut operands = operands.map(|operand| self.ranges[operand.index()]);
+                assumption = Assumption::about(*operation, operands).filter(|_| assumes);
+                if let Some(assumption) = assumption {
+                    let operand = &mut operands[assumption.operand];
+                    *operand = assumption.narrowed(*operand);
+                }
+                let [a, b, c] = operands;
+                match operation.extension() {
+                    Extension::Unary(extend) => extend(a),
+                    Extension::Binary(extend) => extend(a, b),
+                    Extension::Ternary(extend) => extend(a, b, c),
+                }
+            }
+        };
+        self.ranges.push(range);
+        self.assumptions.push(assumption);
     }
 
     /// The reach of a domain that holds all but unusual boxes.
     pub(crate) const NEAR: f64 = (1u64 << 16) as f64;
 
-    /// The domain of that reach.
+    /// The domain of that reach, in which nothing is assumed.
     pub(crate) fn near(program: &Program) -> Self {
-        Self { reach: Self::NEAR, ranges: ranges(program, Self::NEAR) }
+        Self::reaching(program, Self::NEAR, false)
     }
 
     /// How many values are common.
     fn common(&self) -> usize {
-        self.ranges.iter().filter(|range| range.decoration == Decoration::Common).count()
+        self.ranges.iter().filter(|range| range.decoration == Common).count()
     }
 
     /// Whether none of the boxes is empty, and all lie inside a domain of this reach.
@@ -54,26 +131,6 @@ impl Domain {
         }
         are_inside
     }
-}
-
-/// Encloses every node over a cube.
-fn ranges(program: &Program, reach: f64) -> Vec<Decorated> {
-    let mut ranges: Vec<Decorated> = Vec::with_capacity(program.nodes().len());
-    for node in program.nodes() {
-        ranges.push(match node {
-            Node::Variable(_) => Decorated::argument(-reach, reach),
-            Node::Constant(constant) => Decorated::constant(constant.enclosure()),
-            Node::Apply(operation, operands) => {
-                let [a, b, c] = operands.map(|operand| ranges[operand.index()]);
-                match operation.extension() {
-                    Extension::Unary(extend) => extend(a),
-                    Extension::Binary(extend) => extend(a, b),
-                    Extension::Ternary(extend) => extend(a, b, c),
-                }
-            }
-        });
-    }
-    ranges
 }
 
 /// On which side of zero some numbers are.
@@ -133,12 +190,31 @@ mod tests {
     }
 
     #[test]
-    fn poles_and_edges_of_definition_are_not_common() {
-        for formula in ["1/x", "sqrt(x - 1)", "floor(y)"] {
+    fn poles_and_steps_are_not_common() {
+        for formula in ["1/x", "1/(x*y)", "floor(y)", "sqrt(floor(y))"] {
             let domain = domain(formula);
             let last = domain.ranges.last().unwrap();
-            assert_ne!(last.decoration, Decoration::Common, "{formula}: {last:?}");
+            assert_ne!(last.decoration, Common, "{formula}: {last:?}");
             assert_eq!(domain.reach, 2f64.powi(128), "{formula}");
+            assert!(domain.assumptions.iter().all(Option::is_none), "{formula}");
+        }
+    }
+
+    #[test]
+    fn divisors_of_one_sign_and_radicands_are_assumed_to_be_of_use() {
+        let divisor = Assumption { operand: 1, least: LEAST_DIVISOR };
+        let radicand = Assumption { operand: 0, least: 0.0 };
+        for (formula, expected) in [
+            ("1/x^2", vec![divisor]),
+            ("x/(-y^2 - z^2)", vec![divisor]),
+            ("sqrt(x - 1)", vec![radicand]),
+            ("1/sqrt(x)", vec![radicand, divisor]),
+            ("x/(y^2 + 1) + sqrt(z^2)", vec![]),
+        ] {
+            let domain = domain(formula);
+            assert_eq!(domain.common(), domain.ranges.len(), "{formula}");
+            let assumed: Vec<_> = domain.assumptions.into_iter().flatten().collect();
+            assert_eq!(assumed, expected, "{formula}");
         }
     }
 

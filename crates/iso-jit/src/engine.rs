@@ -62,6 +62,11 @@ impl Jit {
         }
     }
 
+    /// The engine for what is not worth compiling.
+    fn assembler(&self) -> Assembler {
+        Assembler { pieces: Arc::clone(&self.pieces) }
+    }
+
     /// Lists `blueprint`, which is one of `program`.
     fn list<B: Blueprint>(&self, program: &Program, blueprint: &B) -> Result<Listing, CompileError> {
         Listing::new(self.host.admit(program, &B::LIMITS)?, blueprint)
@@ -100,7 +105,7 @@ impl Engine for Jit {
         let program = program.pruned();
         let blueprint = BoxBlueprint::new(&program);
         match self.compile(&program, &blueprint) {
-            Ok(compiled) => Ok(Arc::new(NativeBoxes::new(&blueprint, compiled)?)),
+            Ok(compiled) => Ok(Arc::new(NativeBoxes::new(&blueprint, compiled, self.assembler()))),
             Err(CompileError::TooLarge { .. } | CompileError::FrameTooLarge { .. }) => {
                 Ok(Arc::new(Assembled::new(&self.pieces, &program)?))
             }
@@ -110,7 +115,7 @@ impl Engine for Jit {
 
     /// Assembles kernels over boxes from operations that are compiled once, and interprets those over points.
     fn for_few_runs(&self) -> Arc<dyn Engine> {
-        Arc::new(Assembler { pieces: Arc::clone(&self.pieces) })
+        Arc::new(self.assembler())
     }
 }
 

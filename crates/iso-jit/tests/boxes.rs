@@ -5,7 +5,7 @@ mod agreement;
 
 use agreement::{boxes, enclosures_agree};
 use iso_expr::random::Random;
-use iso_expr::{Axis, CompileError, Constant, Decorated, Operation, Program};
+use iso_expr::{Ast, Axis, CompileError, Constant, Decorated, Operation, Program};
 use iso_jit::{Jit, Kind};
 
 #[test]
@@ -75,6 +75,47 @@ fn random_programs_agree() {
         let boxes = boxes(&mut random, 25);
         enclosures_agree(&jit, &program, &boxes);
         enclosures_agree(&jit, &program.with_gradient(), &boxes);
+    }
+}
+
+/// Ends next to poles and edges of definition, and at what is assumed of divisors: 2⁻⁶⁰, the square of 2⁻³⁰.
+fn boxes_near_poles(random: &mut Random, count: usize) -> Vec<[Decorated; 3]> {
+    let mut end = || {
+        let end = random.choose(&[0.0, 2f64.powi(-30), 2f64.powi(-60), 1e-200, 5e-324, 1.0]);
+        match random.below(5) {
+            0 => random.between(-2.0, 2.0),
+            1 => -end,
+            2 => end.next_up(),
+            3 => end.next_down(),
+            _ => end,
+        }
+    };
+    let mut side = || {
+        let (a, b) = (end(), end());
+        Decorated::argument(a.min(b), a.max(b))
+    };
+    (0..count).map(|_| [side(), side(), side()]).collect()
+}
+
+#[test]
+fn what_is_assumed_of_divisors_and_radicands_is_checked() {
+    let (jit, mut random) = (Jit::new().unwrap(), Random::new(7));
+    for formula in [
+        "1/(x^2 + y^2)",
+        "z/(-x^2 - y^2)",
+        "x/abs(y)",
+        "1/(x^2 + y^2 + z^2)^2 - 1/((x - 1)^2 + y^2)",
+        "sqrt(x)",
+        "sqrt(x - 1) * y",
+        "z/sqrt(x) + sqrt(-y)",
+        "sqrt(-x^2)",
+        "1/(0*x^2)",
+    ] {
+        let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0);
+        let boxes = boxes_near_poles(&mut random, 400);
+        enclosures_agree(&jit, &program, &boxes);
+        enclosures_agree(&jit, &program.with_gradient(), &boxes);
+        enclosures_agree(&jit, &program.with_hessian(), &boxes[..100]);
     }
 }
 

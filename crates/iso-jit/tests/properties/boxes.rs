@@ -3,23 +3,23 @@
 
 use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::random::Random;
-use iso_expr::{Decorated, Decoration, Engine, Interpreter, Program, Scratch};
+use iso_expr::{BoxKernel, Decorated, Decoration, Engine, Interpreter, Program, Scratch};
 use iso_jit::Jit;
 
-/// The enclosures of all outputs over all boxes, as bits, any NaN counting as one.
+/// The enclosures of so many outputs over all boxes, as bits, any NaN counting as one.
 fn enclosures(
-    engine: &dyn Engine,
-    program: &Program,
+    kernel: &dyn BoxKernel,
+    outputs: usize,
     boxes: &[[Decorated; 3]],
 ) -> Vec<(u64, u64, Decoration)> {
     let ends = |end: fn(&Decorated) -> f64| {
         [0, 1, 2].map(|axis| boxes.iter().map(|ranges| end(&ranges[axis])).collect::<Vec<_>>())
     };
     let (lo, hi) = (ends(|range| range.interval.lo), ends(|range| range.interval.hi));
-    let count = program.outputs().len() * boxes.len();
+    let count = outputs * boxes.len();
     let (mut output_lo, mut output_hi) = (vec![7.0; count], vec![7.0; count]);
     let mut decoration = vec![Decoration::Defined; count];
-    engine.boxes(program).unwrap().evaluate(
+    kernel.evaluate(
         &mut Scratch::default(),
         Boxes { lo: lo.each_ref().map(|ends| &ends[..]), hi: hi.each_ref().map(|ends| &ends[..]) },
         Enclosures { lo: &mut output_lo, hi: &mut output_hi, decoration: &mut decoration },
@@ -30,20 +30,28 @@ fn enclosures(
 }
 
 /// Native code gives the interpreter's enclosures over `boxes`, and over those of them that are bounded and of moderate size, for
-/// which the code is made; any other box in a batch leaves all of it to the interpreter.
+/// which the code is made; any other box in a batch leaves all of it to other code, and so does one of which too much was assumed,
+/// wherefore those are also given a few at a time.
 pub(crate) fn enclosures_agree(jit: &Jit, program: &Program, boxes: &[[Decorated; 3]]) {
-    all_agree(jit, program, boxes);
     let is_moderate = |side: &Decorated| side.interval.magnitude() <= 65_536.0;
     let moderate: Vec<_> = boxes.iter().copied().filter(|sides| sides.iter().all(is_moderate)).collect();
-    all_agree(jit, program, &moderate);
+    let interpreted = Interpreter.boxes(program).unwrap();
+    for kernel in [jit.boxes(program).unwrap(), jit.for_few_runs().boxes(program).unwrap()] {
+        for batch in [boxes, &moderate].into_iter().chain(moderate.chunks(1)).chain(moderate.chunks(3)) {
+            all_agree(&*kernel, &*interpreted, program, batch);
+        }
+    }
 }
 
-fn all_agree(jit: &Jit, program: &Program, boxes: &[[Decorated; 3]]) {
-    let expected = enclosures(&Interpreter, program, boxes);
-    let (compiled, assembled) =
-        (enclosures(jit, program, boxes), enclosures(&*jit.for_few_runs(), program, boxes));
-    let expected = expected.iter().chain(&expected);
-    for (place, (native, expected)) in compiled.iter().chain(&assembled).zip(expected).enumerate() {
+fn all_agree(
+    native: &dyn BoxKernel,
+    interpreted: &dyn BoxKernel,
+    program: &Program,
+    boxes: &[[Decorated; 3]],
+) {
+    let [native, expected] =
+        [native, interpreted].map(|kernel| enclosures(kernel, program.outputs().len(), boxes));
+    for (place, (native, expected)) in native.iter().zip(&expected).enumerate() {
         let show = |(lo, hi, decoration): &(u64, u64, Decoration)| {
             format!("[{:e}, {:e}] {decoration:?}", f64::from_bits(*lo), f64::from_bits(*hi))
         };
