@@ -149,7 +149,7 @@ impl Comparison {
         let mut outcomes = vec![Outcome::Miss; rays.len()];
         trace(&tracer, &mut workspace, &rays, &mut outcomes);
         let mut found = vec![DVec3::NAN; rays.len()];
-        normals(&surface, &mut workspace, rays.as_slice().into(), &outcomes, &mut found)
+        normals(&surface, None, &mut workspace, rays.as_slice().into(), &outcomes, &mut found)
             .expect("the scenes compile");
 
         let mut comparison = Self {

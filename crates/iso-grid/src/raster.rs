@@ -229,3 +229,57 @@ impl<'a> From<&'a [Ray]> for Tile<'a> {
         Self::listed(rays, rays.len().max(1))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use iso_expr::random::Random;
+    use pulp::{Arch, WithSimd};
+
+    use super::*;
+
+    /// A row of a tile's rays from a place on, and their points at t.
+    struct Points<'a>(&'a Tile<'a>, usize, Row);
+
+    impl WithSimd for Points<'_> {
+        type Output = (RayRow, [Row; 3]);
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+            let Self(tile, first, t) = self;
+            let rays = tile.row_from(simd, first);
+            let [mut x, mut y, mut z] = [Row::default(); 3];
+            rays.at(simd, &t, [&mut x, &mut y, &mut z]);
+            (rays, [x, y, z])
+        }
+    }
+
+    #[test]
+    fn rays_side_by_side_are_those_one_by_one() {
+        let mut random = Random::new(11);
+        for round in 0..300 {
+            let mut vector = || DVec3::from_array([(); 3].map(|()| random.between(-3.0, 3.0)));
+            let [from, forward, right, down] = [vector(), vector(), 0.01 * vector(), 0.01 * vector()];
+            let raster = if round % 2 == 0 {
+                Raster::Parallel { middle: from, right, down, direction: forward }
+            } else {
+                Raster::Spreading { eye: from, forward, right, down }
+            };
+            let (width, height) = (1 + random.below(20), 1 + random.below(5));
+            let corner = [random.below(200) as f64 - 100.5, random.below(200) as f64 - 100.0];
+            let tile = Tile::of(&raster, corner, width, height);
+            let rays: Vec<_> = tile.rays().collect();
+            let t: Row = std::array::from_fn(|_| random.between(0.0, 5.0));
+            for tile in [tile, Tile::listed(&rays, width)] {
+                for first in 0..tile.len() {
+                    let (row, points) = Arch::new().dispatch(Points(&tile, first, t));
+                    for (lane, ray) in rays[first..].iter().take(ROW).enumerate() {
+                        let vector = |rows: &[Row; 3]| DVec3::from_array(rows.map(|row| row[lane]));
+                        let found = Ray { origin: vector(&row.origins), direction: vector(&row.directions) };
+                        assert_eq!(found, *ray, "{raster:?}");
+                        assert_eq!(vector(&points), ray.at(t[lane]), "{raster:?}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -7,7 +7,7 @@ use iso_expr::Interval;
 
 use super::bend::{Bend, Course};
 use super::form::{Ball, ROUNDING};
-use super::pixels::{Known, Pixel, Verdict};
+use super::pixels::{Pixel, Verdict};
 use crate::{Ray, Span};
 
 /// What is known of F along a ray that bends.
@@ -91,16 +91,15 @@ impl Arc {
     }
 }
 
-impl Known for Bowed {
-    type Sight = Arc;
-
+impl Pixel {
+    /// Learns from the `value` that was computed for F at t.
     #[inline]
-    fn look(pixel: &mut Pixel<Self>, value: f64, arc: &Arc) -> Verdict {
+    pub(super) fn look(&mut self, value: f64, arc: &Arc) -> Verdict {
         let value = arc.sign * value;
         if !value.is_finite() {
             return Verdict::Lost;
         }
-        let Pixel { t, known, .. } = *pixel;
+        let Self { t, known, .. } = *self;
         let away = t - arc.t;
         let [slope, bending] = [known.slope, away * arc.middle];
         let mut course = Course {
@@ -118,12 +117,10 @@ impl Known for Bowed {
         if slope_error < course.slope_error {
             (course.slope, course.slope_error) = (slope + bending, slope_error);
         }
-        (pixel.known.last_t, pixel.known.last) = (t, value);
-        pixel.judge(course, arc)
+        (self.known.last_t, self.known.last) = (t, value);
+        self.judge(course, arc)
     }
-}
 
-impl Pixel<Bowed> {
     /// A ray on which F is `course` where the part's expansion is centred.
     #[inline]
     pub(super) fn starting(

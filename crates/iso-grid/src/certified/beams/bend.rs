@@ -197,8 +197,8 @@ mod tests {
     use iso_expr::{Ast, Interpreter, Scratch};
 
     use super::*;
+    use crate::area::Area;
     use crate::batch::BoxBatch;
-    use crate::certified::beams::area::Area;
     use crate::{Raster, Span, Surface, Tile};
 
     const FORMULAS: [&str; 5] = [

@@ -4,14 +4,11 @@ use iso_expr::{BatchKernel, Scratch};
 use pulp::{Simd, WithSimd};
 
 use super::form::{Model, ROUNDING};
-use super::pixels::End;
+use super::pixels::{End, STEPS};
 use crate::batch::PointBatch;
 use crate::lanes::{Lanes, ROW, Row, parts};
 use crate::raster::RayRow;
 use crate::{Hit, Span, Tile};
-
-/// How many values of F a ray is given at most before it is searched for its own.
-const STEPS: usize = 10;
 
 /// Rays that may each have a root in a part, and what is known of F along them.
 #[derive(Clone, Copy, Debug, Default)]

@@ -6,7 +6,6 @@
 
 use iso_expr::Extreme;
 
-use super::arcs::Bowed;
 use super::faces::{Face, is_free};
 use super::grazing::{BLOCK, DOUBTFUL};
 use super::pixels::{End, Ended, Pixel, halves_from};
@@ -52,9 +51,9 @@ impl Subdivision<'_> {
 
     /// The rays of a part that may have a root, by the face that each is likely to meet; `None` when too many may be followed in
     /// vain.
-    fn start_on_faces(&mut self, part: &Part, faces: &[Face]) -> Option<Vec<Vec<Pixel<Bowed>>>> {
+    fn start_on_faces(&mut self, part: &Part, faces: &[Face]) -> Option<Vec<Vec<Pixel>>> {
         let area = self.beam(part.beam).area;
-        let mut pixels: Vec<Vec<Pixel<Bowed>>> = faces.iter().map(|_| Vec::new()).collect();
+        let mut pixels: Vec<Vec<Pixel>> = faces.iter().map(|_| Vec::new()).collect();
         let mut lost = Vec::new();
         let mut doubtful = 0;
         for block in area.blocks(BLOCK) {
@@ -96,7 +95,7 @@ impl Subdivision<'_> {
         part: &Part,
         faces: &[Face],
         (place, number, hit): (usize, usize, Hit),
-        pixels: &mut [Vec<Pixel<Bowed>>],
+        pixels: &mut [Vec<Pixel>],
     ) {
         match self.next(part, faces, (place, number, hit)) {
             Next::Nothing => {}

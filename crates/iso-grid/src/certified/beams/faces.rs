@@ -5,7 +5,7 @@
 
 use iso_expr::Extreme;
 
-use super::arcs::{Arc, Bowed, ways};
+use super::arcs::{Arc, ways};
 use super::bend::{Bend, Course};
 use super::form::{Form, Gradient};
 use super::pixels::Pixel;
@@ -130,13 +130,7 @@ impl Subdivision<'_> {
     }
 
     /// A ray that is to meet a face in a stretch, about how far from the middle of the part that is, and whether it is doubtful.
-    pub(super) fn on_face(
-        &self,
-        part: &Part,
-        face: &Face,
-        place: usize,
-        wanted: Span,
-    ) -> (Pixel<Bowed>, f64, bool) {
+    pub(super) fn on_face(&self, part: &Part, face: &Face, place: usize, wanted: Span) -> (Pixel, f64, bool) {
         let (column, row) = self.position(place);
         let (a, b) = self.beam(part.beam).area.offset(column, row);
         let course = face.bend.at(a, b);

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use glam::DVec3;
 use iso_expr::{Decorated, Interval};
 
-use super::arcs::{Arc, Bowed, ways};
+use super::arcs::{Arc, ways};
 use super::bend::Bend;
 use super::pixels::{Pixel, Verdict, halves_from};
 use super::subdivision::{Part, Subdivision};
@@ -144,13 +144,7 @@ impl Subdivision<'_> {
 
     /// Puts the rays of a part that are still followed and may have a root there in front of `pixels`, and counts them; `None` when
     /// too many may be followed in vain.
-    fn start_bent(
-        &mut self,
-        part: &Part,
-        bend: &Bend,
-        arc: &Arc,
-        pixels: &mut Vec<Pixel<Bowed>>,
-    ) -> Option<usize> {
+    fn start_bent(&mut self, part: &Part, bend: &Bend, arc: &Arc, pixels: &mut Vec<Pixel>) -> Option<usize> {
         let beam = &self.memory.beams[part.beam as usize];
         let area = beam.area;
         let room = area.width * area.height;

@@ -1,20 +1,19 @@
 //! Rays of a part, followed each for its own by values of F.
 
-use std::sync::Arc;
-
+use super::arcs::{Arc, Bowed};
 use super::rounding::outwards;
 use super::subdivision::{Part, Subdivision};
 use crate::{Hit, Kernel, Outcome, Ray, Span, Workspace};
 
 /// How many values of F a ray is given at most before it is searched for its own.
-const STEPS: usize = 10;
+pub(super) const STEPS: usize = 10;
 
 /// Shorter kernels are made for a part when it has so many rays.
 const MANY: usize = 64;
 
 /// A ray that may have a root in a part, and what is known of F along it.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Pixel<K> {
+pub(crate) struct Pixel {
     /// Which ray of the tile.
     pub(super) place: usize,
     pub(super) ray: Ray,
@@ -24,16 +23,7 @@ pub(crate) struct Pixel<K> {
     pub(super) wanted: Span,
     /// Where F is to be taken next, inside `reach`.
     pub(super) t: f64,
-    pub(super) known: K,
-}
-
-/// What is known of F along a ray of a part.
-pub(super) trait Known: Copy {
-    /// What is known all over the part.
-    type Sight;
-
-    /// Learns from the `value` that was computed for F at the pixel's t.
-    fn look(pixel: &mut Pixel<Self>, value: f64, sight: &Self::Sight) -> Verdict;
+    pub(super) known: Bowed,
 }
 
 /// What a value told of a pixel.
@@ -68,31 +58,26 @@ pub(super) enum End {
 
 impl Subdivision<'_> {
     /// Ends or goes on with each ray by its root in the part, and notes how it ended if it may have one.
-    pub(super) fn pursue<K: Known>(
+    pub(super) fn pursue(
         &mut self,
-        mut pixels: &mut [Pixel<K>],
+        mut pixels: &mut [Pixel],
         kernels: u32,
-        sight: &K::Sight,
+        arc: &Arc,
         ended: &mut Vec<Ended>,
     ) {
         for step in 1..=STEPS {
             if pixels.is_empty() {
                 break;
             }
-            let count = self.approach(pixels, (kernels, sight), step == STEPS, ended);
+            let count = self.approach(pixels, (kernels, arc), step == STEPS, ended);
             pixels = &mut pixels[..count];
         }
     }
 
     /// Pursues each ray where the part's F is that of these kernels, and ends those that have a root.
-    pub(super) fn pursue_and_settle<K: Known>(
-        &mut self,
-        pixels: &mut [Pixel<K>],
-        kernels: u32,
-        sight: &K::Sight,
-    ) {
+    pub(super) fn pursue_and_settle(&mut self, pixels: &mut [Pixel], kernels: u32, arc: &Arc) {
         let mut ended = std::mem::take(&mut self.memory.ended);
-        self.pursue(pixels, kernels, sight, &mut ended);
+        self.pursue(pixels, kernels, arc, &mut ended);
         for ended in ended.drain(..) {
             self.settle(ended, kernels);
         }
@@ -121,15 +106,15 @@ impl Subdivision<'_> {
         let Some(shortened) = bounds.and_then(|bounds| kernels.shortened(bounds)) else {
             return part.kernels;
         };
-        self.number_of(Arc::new(shortened))
+        self.number_of(std::sync::Arc::new(shortened))
     }
 
     /// Takes F at each pixel's t, and counts the pixels that are nearer to their roots by that, which are then in front. The last
     /// time, those are searched each for its own.
-    fn approach<K: Known>(
+    fn approach(
         &mut self,
-        pixels: &mut [Pixel<K>],
-        (kernels, sight): (u32, &K::Sight),
+        pixels: &mut [Pixel],
+        (kernels, arc): (u32, &Arc),
         is_last: bool,
         ended: &mut Vec<Ended>,
     ) -> usize {
@@ -143,7 +128,7 @@ impl Subdivision<'_> {
         for number in 0..pixels.len() {
             let pixel = &mut pixels[number];
             let place = pixel.place;
-            match K::look(pixel, values[number], sight) {
+            match pixel.look(values[number], arc) {
                 Verdict::Open if !is_last => {
                     if kept < number {
                         pixels[kept] = pixels[number];

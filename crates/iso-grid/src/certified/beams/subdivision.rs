@@ -7,7 +7,6 @@ use glam::DVec3;
 use iso_expr::{Decorated, Extreme, Interval};
 use rustc_hash::FxHashMap;
 
-use super::arcs::Bowed;
 use super::beam::{Beam, count_in};
 use super::bundle::Bundle;
 use super::form::{Form, Gradient};
@@ -124,7 +123,7 @@ pub(crate) struct Memory {
     slabs: Vec<Slab>,
     pub(super) attempts: Attempts,
     pub(super) bundles: Vec<Bundle>,
-    pub(super) bowed: Vec<Pixel<Bowed>>,
+    pub(super) bowed: Vec<Pixel>,
     pub(super) approaches: Vec<Approach>,
     /// How rays ended that were pursued.
     pub(super) ended: Vec<Ended>,
