@@ -252,3 +252,83 @@ impl WithSimd for Pursuit<'_> {
         evaluations
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use iso_expr::{Ast, Engine, Interpreter};
+    use pulp::{Arch, Scalar};
+
+    use super::*;
+    use crate::Raster;
+
+    /// Where rays parallel to z end that look for the unit sphere, by what processors do that `run` chooses.
+    fn ends_on_a_sphere(run: impl Fn(Pursuit<'_>) -> usize) -> Vec<(usize, Option<Hit>)> {
+        let program = Ast::parse("x^2 + y^2 + z^2").unwrap().lower(&[]).unwrap().minus_level(1.0);
+        let raster = Raster::Parallel {
+            middle: DVec3::new(0.0, 0.0, 5.0),
+            right: DVec3::new(0.05, 0.0, 0.0),
+            down: DVec3::new(0.0, 0.05, 0.0),
+            direction: DVec3::NEG_Z,
+        };
+        let tile = Tile::of(&raster, [-3.5, -3.5], 8, 8);
+        let model = Model { t: 4.1, by_column: 0.0, by_row: 0.0, uncertainty: 0.2 };
+        let sight = Sight { inverse: -0.5, unevenness: 0.3, blur: 1e-15, tolerance: 1e-12 };
+        let mut bundles = vec![Bundle::default(); 9];
+        for row in 0..8 {
+            bundles[row].clear();
+            for column in 0..8 {
+                // The last row's roots lie before what is wanted, and the sixth's before where F may be looked at.
+                let from = if row == 7 { 4.3 } else { 3.9 };
+                let wanted = Span { start: from, end: 4.6 };
+                let reach = Span { start: if row == 5 { 4.1 } else { from }, end: 4.7 };
+                if (row, column) != (2, 3) {
+                    bundles[row].put(column, (8 * row + column, column, row), [wanted, reach]);
+                }
+            }
+        }
+        let start = &Start {
+            tile: &tile,
+            model: &model,
+            middle: (3.5, 3.5),
+            within: model.around(Span { start: 4.0, end: 4.4 }),
+        };
+        let kernel = &*Interpreter.batch(&program).unwrap();
+        let (mut points, mut scratch) = (PointBatch::default(), Scratch::default());
+        let evaluations = run(Pursuit {
+            start,
+            bundles: &mut bundles,
+            sight: &sight,
+            kernel,
+            points: &mut points,
+            scratch: &mut scratch,
+        });
+        assert!((3 * 64..8 * 64).contains(&evaluations), "{evaluations}");
+        let hit = |end| if let End::Hit(hit) = end { Some(hit) } else { None };
+        bundles.iter().flat_map(Bundle::ends).map(|(place, end)| (place, hit(end))).collect()
+    }
+
+    #[test]
+    fn rays_end_where_they_meet_the_sphere_on_any_processor() {
+        let found = ends_on_a_sphere(|pursuit| Arch::new().dispatch(pursuit));
+        assert_eq!(found, ends_on_a_sphere(|pursuit| pursuit.with_simd(Scalar::new())));
+        #[cfg(target_arch = "x86_64")]
+        if let Some(processor) = pulp::x86::V3::try_new() {
+            assert_eq!(found, ends_on_a_sphere(|pursuit| Simd::vectorize(processor, pursuit)));
+        }
+        assert_eq!(found.len(), 64 - 8 - 1, "the last row is free, and one lane has no ray");
+        for (place, hit) in found {
+            let [x, y] = [place % 8, place / 8].map(|at| 0.05 * (at as f64 - 3.5));
+            let root = 5.0 - (1.0 - x * x - y * y).sqrt();
+            match hit {
+                Some(Hit { t, bracket: Span { start, end } }) => {
+                    assert!(start <= t && t <= end && end - start <= 1e-12, "{place}");
+                    // The closed form is rounded, too.
+                    assert!(start - 1e-15 <= root && root <= end + 1e-15, "{place}");
+                    assert_ne!(place / 8, 5, "{place}");
+                }
+                None => assert_eq!(place / 8, 5, "{place}"),
+            }
+        }
+    }
+}
