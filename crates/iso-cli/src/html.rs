@@ -6,7 +6,7 @@ use std::path::Path;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use iso_grid::Counters;
-use iso_render::{EncodeError, ImageFormat, Picture, Size, StatusCounts};
+use iso_render::{EncodeError, ImageFormat, Layer, Picture, Size, StatusCounts};
 
 /// Text as it may stand in HTML and SVG. Characters that these cannot hold are replaced.
 pub(crate) fn escaped(text: &str) -> String {
@@ -29,10 +29,10 @@ pub(crate) fn escaped(text: &str) -> String {
 pub(crate) fn image_address(size: Size, color: Vec<[u8; 3]>) -> Result<String, EncodeError> {
     let picture = Picture {
         size,
-        color,
-        depth: Vec::new(),
-        normals: Vec::new(),
-        points: Vec::new(),
+        color: color.into(),
+        depth: Layer::default(),
+        normals: Layer::default(),
+        points: Layer::default(),
         statuses: Vec::new(),
         outcomes: Vec::new(),
         counts: StatusCounts::default(),

@@ -35,14 +35,9 @@ mod values;
 use std::process::ExitCode;
 
 use clap::Parser;
-use mimalloc::MiMalloc;
 
 use failure::Failure;
 use flags::{Command, Flags};
-
-/// Large pictures are touched for the first time much faster in the large pages that this one takes from the system.
-#[global_allocator]
-static ALLOCATOR: MiMalloc = MiMalloc;
 
 fn main() -> ExitCode {
     match run(Flags::parse().command) {

@@ -10,6 +10,7 @@ mod clock;
 mod color;
 #[cfg(any(feature = "images", feature = "openexr"))]
 mod encode;
+mod layer;
 mod picture;
 mod plan;
 mod render;
@@ -24,6 +25,7 @@ pub use color::{Color, color_from_srgb, srgb_from_color};
 pub use encode::EncodeError;
 #[cfg(feature = "images")]
 pub use encode::{Animation, ImageFormat};
+pub use layer::Layer;
 pub use picture::{Layers, Picture, Status, StatusCounts};
 pub use plan::{Buffer, Decision, Given, Pass, Plan, Wanted};
 pub use render::{Progress, RenderError, Scene, render};

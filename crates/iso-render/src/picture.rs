@@ -1,13 +1,12 @@
 //! Pictures: what was found, pixel by pixel.
 
-use bytemuck::Zeroable;
-use bytemuck::allocation::try_zeroed_vec;
+use bytemuck::Pod;
 use glam::DVec3;
 use iso_grid::{Counters, Outcome};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::Size;
+use crate::{Layer, Size};
 
 /// How the search for a pixel's surface ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,13 +103,13 @@ pub struct Picture {
     /// Width and height.
     pub size: Size,
     /// Red, green and blue bytes in sRGB; [`Picture::UNFINISHED`] where pixels are unfinished.
-    pub color: Vec<[u8; 3]>,
+    pub color: Layer<[u8; 3]>,
     /// The distance t along each ray; NaN where nothing was found, −∞ where pixels are unfinished.
-    pub depth: Vec<f64>,
+    pub depth: Layer<f64>,
     /// Unit normals towards larger F; NaN where nothing was found, zero where pixels are unfinished.
-    pub normals: Vec<DVec3>,
+    pub normals: Layer<DVec3>,
     /// Points of the surface; NaN where nothing was found or pixels are unfinished.
-    pub points: Vec<DVec3>,
+    pub points: Layer<DVec3>,
     /// The status of each pixel.
     pub statuses: Vec<Status>,
     /// How the search along each ray ended.
@@ -149,8 +148,8 @@ impl Picture {
 }
 
 /// A layer of zeros. Memory is first touched by the threads that write to it.
-fn zeroed<T: Zeroable>(wanted: bool, size: Size) -> Option<Vec<T>> {
-    try_zeroed_vec(if wanted { size.pixels() } else { 0 }).ok()
+fn zeroed<T: Pod>(wanted: bool, size: Size) -> Option<Layer<T>> {
+    Layer::zeroed(if wanted { size.pixels() } else { 0 })
 }
 
 /// A layer, filled by all threads: what takes time is that memory is first touched.

@@ -1,7 +1,7 @@
 //! Smooth edges: pictures drawn larger and averaged.
 
 use crate::color::{Color, color_from_srgb, srgb_from_color};
-use crate::{Picture, Size, SizeError};
+use crate::{Layer, Picture, Size, SizeError};
 
 /// How many pixels, across and down, are drawn for each pixel of the finished picture.
 ///
@@ -45,9 +45,9 @@ impl Smoothing {
             .map(|(column, row)| srgb_from_color(self.average(&picture.color, drawn, column, row)))
             .collect();
         (picture.size, picture.color) = (size, finished);
-        picture.depth.clear();
-        picture.normals.clear();
-        picture.points.clear();
+        picture.depth = Layer::default();
+        picture.normals = Layer::default();
+        picture.points = Layer::default();
         picture.statuses.clear();
     }
 
@@ -75,10 +75,10 @@ mod tests {
         let mut picture = Picture::with_room(drawn, Layers::COLOR).unwrap();
         // The left square is half black and half white, the right one of one colour.
         let (black, white, plain) = ([0; 3], [255; 3], [12, 34, 56]);
-        picture.color = vec![black, white, plain, plain, white, black, plain, plain];
+        picture.color = vec![black, white, plain, plain, white, black, plain, plain].into();
         smoothing.finish(&mut picture);
         // Half of the light is byte 188 in sRGB.
-        assert_eq!(picture.color, [[188; 3], plain]);
+        assert_eq!(*picture.color, [[188; 3], plain]);
         assert_eq!((picture.size.width(), picture.size.height()), (2, 1));
     }
 

@@ -100,7 +100,7 @@ fn layers_left_out_are_not_computed_and_change_no_other() {
             let plan = Plan::new(&wanted(&program, method, layers));
             let (picture, _) = draw(&program, &plan);
             let full = |wanted: bool| if wanted { all.size.pixels() } else { 0 };
-            assert_eq!(picture.color, all.color[..full(layers.color)], "{method:?} {layers:?}");
+            assert_eq!(*picture.color, all.color[..full(layers.color)], "{method:?} {layers:?}");
             let depths = |depths: &[f64]| depths.iter().map(|t| t.to_bits()).collect::<Vec<_>>();
             assert_eq!(depths(&picture.depth), depths(&all.depth[..full(layers.depth)]));
             assert_eq!(bits(&picture.normals), bits(&all.normals[..full(layers.normals)]));

@@ -35,7 +35,7 @@ pub(crate) struct Image {
 
 /// The proven picture.
 pub(super) fn proven_image(proven: &Picture) -> Result<Image, EncodeError> {
-    let address = image_address(proven.size, proven.color.clone())?;
+    let address = image_address(proven.size, proven.color.to_vec())?;
     Ok(Image { address, caption: "The picture as proven, ray by ray.".to_owned() })
 }
 

@@ -27,7 +27,7 @@ pub(crate) fn verdicts(
 
 /// The answers that a picture with the layers `outcomes` and `normals` holds.
 fn answers(picture: &Picture) -> Answers {
-    Answers { outcomes: picture.outcomes.clone(), normals: picture.normals.clone() }
+    Answers { outcomes: picture.outcomes.clone(), normals: picture.normals.to_vec() }
 }
 
 /// Pixels by verdict, and how far right ones are from what is proven.

@@ -72,7 +72,7 @@ mod tests {
             assert_eq!(Duration::from(frame.delay()), Animation::<Vec<u8>>::PICTURE);
             // Six colours fit into a palette.
             let colors = frame.buffer().pixels().map(|pixel| [pixel[0], pixel[1], pixel[2]]);
-            assert_eq!(colors.collect::<Vec<_>>(), picture.color);
+            assert_eq!(colors.collect::<Vec<_>>(), *picture.color);
         }
     }
 }

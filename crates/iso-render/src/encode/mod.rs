@@ -46,7 +46,7 @@ mod testing {
         let all = Layers { depth: true, normals: true, ..Layers::COLOR };
         let mut picture = Picture::with_room(Size::new(3, 2).unwrap(), all).unwrap();
         picture.color = (0..6).map(|pixel| [pixel, 40 * pixel, 255 - pixel]).collect();
-        picture.depth = vec![f64::NAN; 6];
+        picture.depth = vec![f64::NAN; 6].into();
         picture.depth[4] = 1.25;
         picture.normals[4] = DVec3::new(0.0, -0.6, 0.8);
         picture

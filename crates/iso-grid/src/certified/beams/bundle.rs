@@ -275,15 +275,15 @@ mod tests {
         let model = Model { t: 4.1, by_column: 0.0, by_row: 0.0, uncertainty: 0.2 };
         let sight = Sight { inverse: -0.5, unevenness: 0.3, blur: 1e-15, tolerance: 1e-12 };
         let mut bundles = vec![Bundle::default(); 9];
-        for row in 0..8 {
-            bundles[row].clear();
+        for (row, bundle) in bundles.iter_mut().enumerate().take(8) {
+            bundle.clear();
             for column in 0..8 {
                 // The last row's roots lie before what is wanted, and the sixth's before where F may be looked at.
                 let from = if row == 7 { 4.3 } else { 3.9 };
                 let wanted = Span { start: from, end: 4.6 };
                 let reach = Span { start: if row == 5 { 4.1 } else { from }, end: 4.7 };
                 if (row, column) != (2, 3) {
-                    bundles[row].put(column, (8 * row + column, column, row), [wanted, reach]);
+                    bundle.put(column, (8 * row + column, column, row), [wanted, reach]);
                 }
             }
         }
