@@ -57,7 +57,7 @@ impl Assumption {
 }
 
 /// The reaches that are considered, as powers of two. Products of many factors overflow over large domains, so that nothing is
-/// known of them; pictures of larger boxes than those of a small domain are left to the interpreter.
+/// known of them; larger boxes than those of a small domain are left to assembled kernels.
 const REACHES: [i32; 4] = [128, 64, 32, 16];
 
 impl Domain {

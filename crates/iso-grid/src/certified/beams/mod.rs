@@ -4,7 +4,7 @@
 //! points, and the mean value form, whose excess shrinks with the square of the beam's size, says one of these things:
 //! - F is nowhere zero: no ray of the beam has a root in the stretch;
 //! - F is monotone along every ray: each ray has at most one root there, and one step of the interval Newton method
-//!   over the beam tells about where. Then each ray's own root is approached by doubles from the beam's linear model. A
+//!   over the beam tells about where. Then each ray's own root is approached by doubles from the beam's linear model, eight rays side by side. A
 //!   double computed for F, with a bound of its rounding that holds all over the stretch, and the beam's slopes prove and
 //!   enclose the root: no ray needs an interval of its own;
 //! - neither, as where rays graze the surface. If the second derivatives of F, enclosed as well, show that F bends one way along

@@ -1,4 +1,5 @@
-//! Rays of a part, followed each for its own by values of F.
+//! Rays of a part along which F may bend, followed each for its own by values of F. Where F is monotone, they are followed
+//! [side by side](super::bundle).
 
 use super::arcs::{Arc, Bowed};
 use super::rounding::outwards;
