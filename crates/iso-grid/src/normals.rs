@@ -54,13 +54,13 @@ pub fn normals(
     asked.extend(
         outcomes.iter().map(|outcome| if let Outcome::Hit(hit) = outcome { hit.t } else { f64::NAN }),
     );
+    let all = Area { column: 0, row: 0, width: tile.width(), height: tile.height() };
     if let (Some(tracer), true) = (tracer, surface.program().has_branches()) {
-        let all = Area { column: 0, row: 0, width: tile.width(), height: tile.height() };
         for block in all.blocks(BLOCK) {
             answer_block(tracer, workspace, (tile, block), &mut asked, normals);
         }
     }
-    answer(&**everywhere, workspace, tile, &asked, normals);
+    answer(&**everywhere, workspace, (tile, all), &asked, normals);
     let mut others: Vec<Met> = Vec::new();
     for (place, outcome) in outcomes.iter().enumerate() {
         match *outcome {
@@ -80,7 +80,7 @@ pub fn normals(
         for met in &others {
             asked[met.place] = met.in_front(&tile, approach);
         }
-        answer(&**everywhere, workspace, tile, &asked, normals);
+        answer(&**everywhere, workspace, (tile, all), &asked, normals);
         others.retain(|met| normals[met.place].is_nan());
     }
     workspace.asked = asked;
@@ -97,16 +97,10 @@ fn answer_block(
 ) {
     let Some((lo, hi)) = around(tile, block, asked) else { return };
     let Some(kernel) = tracer.gradients_on(lo, hi) else { return };
-    let mut here = std::mem::take(&mut workspace.asked_here);
-    here.clear();
-    here.resize(asked.len(), f64::NAN);
+    answer(&*kernel, workspace, (tile, block), asked, normals);
     for row in block.rows() {
-        let start = row * tile.width() + block.column;
-        let places = start..start + block.width;
-        here[places.clone()].swap_with_slice(&mut asked[places]);
+        asked[row * tile.width()..][block.columns()].fill(f64::NAN);
     }
-    answer(&*kernel, workspace, tile, &here, normals);
-    workspace.asked_here = here;
 }
 
 /// The corners of a box around the points of a block at which normals are asked for, if there are many.
@@ -124,23 +118,24 @@ fn around(tile: Tile<'_>, block: Area, asked: &[f64]) -> Option<(DVec3, DVec3)> 
     (count >= MANY).then_some((lo, hi))
 }
 
-/// Puts the normals in their places that are asked for: at these t of the rays of a tile, NaN where none is.
+/// Puts the normals in their places that are asked for in an area: at these t of the rays of a tile, NaN where none is.
 fn answer(
     kernel: &dyn BatchKernel,
     workspace: &mut Workspace,
-    tile: Tile<'_>,
+    (tile, area): (Tile<'_>, Area),
     asked: &[f64],
     normals: &mut [DVec3],
 ) {
     let Workspace { arch, scratch, counters, points, .. } = workspace;
-    counters.gradient_evaluations += asked.iter().filter(|t| !t.is_nan()).count() as u64;
-    arch.dispatch(Search { kernel, tile, asked, points, scratch, normals });
+    counters.gradient_evaluations +=
+        arch.dispatch(Search { kernel, tile, area, asked, points, scratch, normals });
 }
 
-/// The search for the normals of a tile.
+/// The search for the normals of an area of a tile.
 struct Search<'a> {
     kernel: &'a dyn BatchKernel,
     tile: Tile<'a>,
+    area: Area,
     asked: &'a [f64],
     points: &'a mut PointBatch,
     scratch: &'a mut Scratch,
@@ -148,15 +143,21 @@ struct Search<'a> {
 }
 
 impl WithSimd for Search<'_> {
-    type Output = ();
+    /// How many normals were asked for.
+    type Output = u64;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self { kernel, tile, asked, points, scratch, normals } = self;
+    fn with_simd<S: Simd>(self, simd: S) -> u64 {
+        let Self { kernel, tile, area, asked, points, scratch, normals } = self;
         let mut units = [[0.0; ROW]; 4];
-        let mut rows =
-            (0..asked.len()).step_by(ROW).filter(|first| row_from(asked, *first).iter().any(|t| !t.is_nan()));
-        let mut firsts = [0; ROWS];
+        let lanes_of = |column: usize| ROW.min(area.column + area.width - column);
+        let mut rows = area
+            .rows()
+            .flat_map(|row| area.columns().step_by(ROW).map(move |column| (row, column)))
+            .map(|(row, column)| (row * tile.width() + column, lanes_of(column)))
+            .filter(|(first, lanes)| asked[*first..][..*lanes].iter().any(|t| !t.is_nan()));
+        let mut firsts = [(0, 0); ROWS];
+        let mut answered = 0;
         loop {
             let mut count = 0;
             for (place, first) in firsts.iter_mut().zip(&mut rows) {
@@ -164,20 +165,22 @@ impl WithSimd for Search<'_> {
                 count += 1;
             }
             if count == 0 {
-                return;
+                return answered;
             }
-            for (first, coordinates) in firsts.iter().zip(points.rows(count)) {
-                tile.row_from(simd, *first).at(simd, &row_from(asked, *first), coordinates);
+            for ((first, lanes), coordinates) in firsts.iter().zip(points.rows(count)) {
+                let t = row_of(&asked[*first..][..*lanes]);
+                tile.row_from(simd, *first).at(simd, &t, coordinates);
             }
             let outputs = points.evaluate(kernel, scratch, 4);
             let (outputs, _) = outputs.as_chunks::<ROW>();
-            for (number, first) in firsts[..count].iter().enumerate() {
+            for (number, (first, lanes)) in firsts[..count].iter().enumerate() {
                 let gradients = [1, 2, 3].map(|output| &outputs[output * count + number]);
                 put_units(simd, gradients, &mut units);
-                for (lane, t) in asked[*first..].iter().take(ROW).enumerate() {
+                for (lane, t) in asked[*first..][..*lanes].iter().enumerate() {
                     if t.is_nan() {
                         continue;
                     }
+                    answered += 1;
                     let [x, y, z, is_plain] = units.each_ref().map(|row| row[lane]);
                     let found = || unit_of(DVec3::from_array(gradients.map(|row| row[lane])));
                     normals[first + lane] = if is_plain > 0.0 { DVec3::new(x, y, z) } else { found() };
@@ -187,15 +190,11 @@ impl WithSimd for Search<'_> {
     }
 }
 
-/// The numbers from one on; NaN behind the last.
+/// Up to a row of numbers; NaN behind the last.
 #[inline(always)]
-fn row_from(numbers: &[f64], first: usize) -> Row {
-    let rest = &numbers[first..];
-    if let Some(row) = rest.first_chunk() {
-        return *row;
-    }
+fn row_of(numbers: &[f64]) -> Row {
     let mut row = [f64::NAN; ROW];
-    row[..rest.len()].copy_from_slice(rest);
+    row[..numbers.len()].copy_from_slice(numbers);
     row
 }
 

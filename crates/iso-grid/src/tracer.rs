@@ -71,8 +71,6 @@ pub struct Workspace {
     pub(crate) arch: Arch,
     /// Where normals are asked for along the rays of a tile.
     pub(crate) asked: Vec<f64>,
-    /// The same in a part of the tile.
-    pub(crate) asked_here: Vec<f64>,
     /// Points for the kernels, and their values.
     pub(crate) points: PointBatch,
     /// Points whose gradients are asked for beside their values.

@@ -63,8 +63,13 @@ const REACHES: [i32; 4] = [128, 64, 32, 16];
 impl Domain {
     /// The domain over which most values of `program` are common; of several the largest.
     pub(crate) fn of(program: &Program) -> Self {
-        let domains = [false, true].into_iter().flat_map(|assumes| {
-            REACHES.map(|exponent| Self::reaching(program, 2f64.powi(exponent), assumes))
+        let may_assume = program
+            .nodes()
+            .iter()
+            .any(|node| matches!(node, Node::Apply(Operation::Divide | Operation::SquareRoot, _)));
+        let choices = if may_assume { &[false, true][..] } else { &[false] };
+        let domains = choices.iter().flat_map(|assumes| {
+            REACHES.map(|exponent| Self::reaching(program, 2f64.powi(exponent), *assumes))
         });
         // The first one among equals, so that nothing is assumed in vain.
         domains
