@@ -10,7 +10,7 @@ use iso_grid::{Certified, GridSettings, Surface, Tracer};
 use iso_jit::Jit;
 use iso_render::{
     Camera, Layers, Picture, Plan, Projection, Scene, Shading, Smoothing, Status, StatusCounts, Wanted,
-    render,
+    render_over,
 };
 
 use crate::depths::Depths;
@@ -100,7 +100,7 @@ impl Iso {
         Ok(Self { surface, method, tracer, camera, shading, view, picture: None })
     }
 
-    fn draw(&self, layers: Layers) -> Result<Picture, Box<dyn Error>> {
+    fn draw_over(&self, picture: &mut Picture, layers: Layers) -> Result<(), Box<dyn Error>> {
         let plan = Plan::new(&Wanted {
             program: self.surface.program(),
             method: self.method,
@@ -117,7 +117,7 @@ impl Iso {
             camera: &self.camera,
             shading: &self.shading,
         };
-        Ok(render(&scene, self.view.size()?, &|_, _| {})?)
+        Ok(render_over(&scene, picture, &|_, _| {})?)
     }
 
     fn depths_of(&self, picture: &Picture) -> Depths {
@@ -130,7 +130,8 @@ impl Iso {
     /// When memory does not suffice.
     pub fn answer(&self) -> Result<Answer, Box<dyn Error>> {
         let layers = Layers { depth: true, statuses: true, ..Layers::default() };
-        let picture = self.draw(layers)?;
+        let mut picture = Picture::empty(self.view.size()?);
+        self.draw_over(&mut picture, layers)?;
         Ok(Answer {
             depths: self.depths_of(&picture),
             decided: picture.statuses.iter().map(|status| *status != Status::Undecided).collect(),
@@ -145,9 +146,10 @@ impl Renderer for Iso {
     }
 
     fn render(&mut self) -> Result<f64, Box<dyn Error>> {
-        self.picture = None;
+        let size = self.view.size()?;
+        let mut picture = self.picture.take().unwrap_or_else(|| Picture::empty(size));
         let start = Instant::now();
-        let picture = self.draw(Layers { depth: true, normals: true, ..Layers::default() })?;
+        self.draw_over(&mut picture, Layers { depth: true, normals: true, ..Layers::default() })?;
         let seconds = start.elapsed().as_secs_f64();
         self.picture = Some(picture);
         Ok(seconds)

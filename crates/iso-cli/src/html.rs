@@ -5,8 +5,7 @@ use std::path::Path;
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
-use iso_grid::Counters;
-use iso_render::{EncodeError, ImageFormat, Layer, Picture, Size, StatusCounts};
+use iso_render::{EncodeError, ImageFormat, Picture, Size};
 
 /// Text as it may stand in HTML and SVG. Characters that these cannot hold are replaced.
 pub(crate) fn escaped(text: &str) -> String {
@@ -27,19 +26,7 @@ pub(crate) fn escaped(text: &str) -> String {
 
 /// The address of an image that is part of the page itself: pixels row by row from the top, as PNG.
 pub(crate) fn image_address(size: Size, color: Vec<[u8; 3]>) -> Result<String, EncodeError> {
-    let picture = Picture {
-        size,
-        color: color.into(),
-        depth: Layer::default(),
-        normals: Layer::default(),
-        points: Layer::default(),
-        statuses: Vec::new(),
-        outcomes: Vec::new(),
-        counts: StatusCounts::default(),
-        counters: Counters::default(),
-        trace_seconds: 0.0,
-        shade_seconds: 0.0,
-    };
+    let picture = Picture { color: color.into(), ..Picture::empty(size) };
     let mut file = Cursor::new(Vec::new());
     picture.write_color(ImageFormat::of(Path::new("picture.png"))?, &mut file)?;
     Ok(format!("data:image/png;base64,{}", BASE64_STANDARD.encode(file.into_inner())))

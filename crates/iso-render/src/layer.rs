@@ -24,8 +24,18 @@ enum Memory<T> {
 const LARGE: usize = 1 << 23;
 
 impl<T: Pod> Layer<T> {
-    /// So many pixels of zeros, not touched yet; `None` when memory does not suffice.
-    pub(crate) fn zeroed(pixels: usize) -> Option<Self> {
+    /// Gives it so many pixels, which mean nothing, and keeps its memory where it has as many; `None` when memory does not
+    /// suffice.
+    pub(crate) fn make_room(&mut self, pixels: usize) -> Option<()> {
+        if self.len() != pixels {
+            *self = Self::default();
+            *self = Self::zeroed(pixels)?;
+        }
+        Some(())
+    }
+
+    /// So many pixels of zeros, which threads touch first that write to them; `None` when memory does not suffice.
+    fn zeroed(pixels: usize) -> Option<Self> {
         let bytes = pixels.checked_mul(size_of::<T>())?;
         if bytes < LARGE {
             return Some(Self(Memory::Heap(try_zeroed_vec(pixels).ok()?)));

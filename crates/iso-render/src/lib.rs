@@ -28,7 +28,7 @@ pub use encode::{Animation, ImageFormat};
 pub use layer::Layer;
 pub use picture::{Layers, Picture, Status, StatusCounts};
 pub use plan::{Buffer, Decision, Given, Pass, Plan, Wanted};
-pub use render::{Progress, RenderError, Scene, render};
+pub use render::{Progress, RenderError, Scene, render, render_over};
 pub use shading::Shading;
 pub use size::{Size, SizeError};
 pub use smooth::Smoothing;

@@ -1,6 +1,5 @@
 //! Pictures: what was found, pixel by pixel.
 
-use bytemuck::Pod;
 use glam::DVec3;
 use iso_grid::{Counters, Outcome};
 use rayon::prelude::*;
@@ -129,35 +128,41 @@ impl Picture {
     /// The colour of unfinished pixels: black, which no lit surface and no background is.
     pub const UNFINISHED: [u8; 3] = [0; 3];
 
-    /// A picture with room for `layers`, no pixel of which means anything yet; `None` when memory does not suffice.
-    pub(crate) fn with_room(size: Size, layers: Layers) -> Option<Self> {
-        Some(Self {
+    /// A picture of this size that has no layers yet.
+    pub fn empty(size: Size) -> Self {
+        Self {
             size,
-            color: zeroed(layers.color, size)?,
-            depth: zeroed(layers.depth, size)?,
-            normals: zeroed(layers.normals, size)?,
-            points: zeroed(layers.points, size)?,
-            statuses: filled(layers.statuses, size, Status::Unfinished)?,
-            outcomes: filled(layers.outcomes, size, Outcome::Miss)?,
+            color: Layer::default(),
+            depth: Layer::default(),
+            normals: Layer::default(),
+            points: Layer::default(),
+            statuses: Vec::new(),
+            outcomes: Vec::new(),
             counts: StatusCounts::default(),
             counters: Counters::default(),
             trace_seconds: 0.0,
             shade_seconds: 0.0,
-        })
+        }
+    }
+
+    /// Makes room for `layers` and drops others. No pixel means anything then. `None` when memory does not suffice.
+    pub(crate) fn make_room(&mut self, layers: Layers) -> Option<()> {
+        let pixels = |wanted: bool| if wanted { self.size.pixels() } else { 0 };
+        self.color.make_room(pixels(layers.color))?;
+        self.depth.make_room(pixels(layers.depth))?;
+        self.normals.make_room(pixels(layers.normals))?;
+        self.points.make_room(pixels(layers.points))?;
+        make_room(&mut self.statuses, pixels(layers.statuses), Status::Unfinished)?;
+        make_room(&mut self.outcomes, pixels(layers.outcomes), Outcome::Miss)
     }
 }
 
-/// A layer of zeros. Memory is first touched by the threads that write to it.
-fn zeroed<T: Pod>(wanted: bool, size: Size) -> Option<Layer<T>> {
-    Layer::zeroed(if wanted { size.pixels() } else { 0 })
-}
-
-/// A layer, filled by all threads: what takes time is that memory is first touched.
-fn filled<T: Copy + Send + Sync>(wanted: bool, size: Size, value: T) -> Option<Vec<T>> {
-    let mut buffer = Vec::new();
-    if wanted {
-        buffer.try_reserve_exact(size.pixels()).ok()?;
-        (0..size.pixels()).into_par_iter().map(|_| value).collect_into_vec(&mut buffer);
+/// Gives a layer so many pixels, filled by all threads where it is new: what takes time is that memory is first touched.
+fn make_room<T: Copy + Send + Sync>(layer: &mut Vec<T>, pixels: usize, value: T) -> Option<()> {
+    if layer.len() != pixels {
+        *layer = Vec::new();
+        layer.try_reserve_exact(pixels).ok()?;
+        (0..pixels).into_par_iter().map(|_| value).collect_into_vec(layer);
     }
-    Some(buffer)
+    Some(())
 }

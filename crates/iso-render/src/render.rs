@@ -57,10 +57,25 @@ const TILE: u32 = 64;
 /// # Errors
 /// When memory does not suffice or a kernel cannot be compiled.
 pub fn render(scene: &Scene<'_>, size: Size, progress: Progress<'_>) -> Result<Picture, RenderError> {
+    let mut picture = Picture::empty(size);
+    render_over(scene, &mut picture, progress)?;
+    Ok(picture)
+}
+
+/// Renders `scene` like [`render()`] in the size of `picture` and in its place. Layers that it has already are drawn over, for
+/// memory that was used before is much faster than new one.
+///
+/// # Errors
+/// Those of [`render()`]. The picture's pixels mean nothing then.
+pub fn render_over(
+    scene: &Scene<'_>,
+    picture: &mut Picture,
+    progress: Progress<'_>,
+) -> Result<(), RenderError> {
     let watch = Stopwatch::start();
-    let layers = scene.plan.layers();
-    let mut picture = Picture::with_room(size, layers).ok_or(RenderError::OutOfMemory(size))?;
-    let bands = Band::all(&mut picture, TILE);
+    let (size, layers) = (picture.size, scene.plan.layers());
+    picture.make_room(layers).ok_or(RenderError::OutOfMemory(size))?;
+    let bands = Band::all(picture, TILE);
     let work = Mutex::new(Work::default());
     tiles(size).into_par_iter().try_for_each_init(Tile::default, |tile, area| {
         let is_finished = tile.render(scene, size, area)?;
@@ -78,8 +93,8 @@ pub fn render(scene: &Scene<'_>, size: Size, progress: Progress<'_>) -> Result<P
     })?;
     drop(bands);
     let work = work.into_inner().expect("no thread panics while it holds the sums");
-    work.note(&mut picture, watch.elapsed());
-    Ok(picture)
+    work.note(picture, watch.elapsed());
+    Ok(())
 }
 
 /// A rectangle of pixels.

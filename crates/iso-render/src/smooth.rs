@@ -72,7 +72,7 @@ mod tests {
         let smoothing = Smoothing::new(2).unwrap();
         let drawn = smoothing.drawn(Size::new(2, 1).unwrap()).unwrap();
         assert_eq!((drawn.width(), drawn.height()), (4, 2));
-        let mut picture = Picture::with_room(drawn, Layers::COLOR).unwrap();
+        let mut picture = Picture::empty(drawn);
         // The left square is half black and half white, the right one of one colour.
         let (black, white, plain) = ([0; 3], [255; 3], [12, 34, 56]);
         picture.color = vec![black, white, plain, plain, white, black, plain, plain].into();
@@ -85,7 +85,8 @@ mod tests {
     #[test]
     fn no_smoothing_changes_nothing() {
         let size = Size::new(3, 2).unwrap();
-        let mut picture = Picture::with_room(size, Layers { depth: true, ..Layers::COLOR }).unwrap();
+        let mut picture = Picture::empty(size);
+        picture.make_room(Layers { depth: true, ..Layers::COLOR }).unwrap();
         Smoothing::NONE.finish(&mut picture);
         assert_eq!((picture.size, picture.depth.len(), picture.color.len()), (size, 6, 6));
     }

@@ -7,7 +7,7 @@ use iso_expr::{Axis, Interpreter, NodeId, Operation, Program};
 use iso_grid::{Certified, Method, Region, Stop, Surface};
 use iso_render::{
     Camera, Layers, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, Status, StatusCounts, View,
-    Wanted, render,
+    Wanted, render_over,
 };
 
 const ALL: Layers =
@@ -38,6 +38,14 @@ fn picture(size: Size, threads: usize) -> Picture {
 
 /// The same, but `stop` is requested when so many pixels are done.
 fn picture_until(stop: &Stop, size: Size, threads: usize, last: u64) -> Picture {
+    let mut picture = Picture::empty(size);
+    draw_over(&mut picture, stop, threads, last);
+    picture
+}
+
+/// The same in the place of another picture.
+fn draw_over(picture: &mut Picture, stop: &Stop, threads: usize, last: u64) {
+    let size = picture.size;
     let program = sphere();
     let surface = Surface::new(Arc::new(Interpreter), program).stopped_by(stop.clone());
     let region = Region::new(DVec3::splat(-1.5), DVec3::splat(1.5)).unwrap();
@@ -63,7 +71,7 @@ fn picture_until(stop: &Stop, size: Size, threads: usize, last: u64) -> Picture 
             stop.request();
         }
     };
-    pool.install(|| render(&scene, size, &progress)).unwrap()
+    pool.install(|| render_over(&scene, picture, &progress)).unwrap();
 }
 
 #[test]
@@ -113,6 +121,28 @@ fn the_upper_left_of_a_sphere_is_brighter_than_the_lower_right() {
     let picture = picture(size, 1);
     let brightness = |column, row| picture.color[size.offset(column, row)].map(u32::from).iter().sum::<u32>();
     assert!(brightness(22, 22) > brightness(37, 37) + 100);
+}
+
+#[test]
+fn nothing_is_left_of_a_picture_that_is_drawn_over() {
+    let size = Size::new(200, 130).unwrap();
+    let last = 2 * 64 * 64;
+    let [whole, part] = [u64::MAX, last].map(|last| picture_until(&Stop::default(), size, 1, last));
+    let (mut over_part, mut over_whole) = (part.clone(), whole.clone());
+    draw_over(&mut over_part, &Stop::default(), 1, u64::MAX);
+    draw_over(&mut over_whole, &Stop::default(), 1, last);
+    for (found, expected) in [(over_part, whole), (over_whole, part)] {
+        assert_eq!((found.counts, found.counters), (expected.counts, expected.counters));
+        assert_eq!((found.color, found.statuses), (expected.color, expected.statuses));
+        assert_eq!(found.outcomes, expected.outcomes);
+        let bits = |layer: &[f64]| layer.iter().map(|t| t.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&found.depth), bits(&expected.depth));
+        for (found, expected) in [(found.normals, expected.normals), (found.points, expected.points)] {
+            let flat =
+                |layer: &[DVec3]| layer.iter().flat_map(|vector| vector.to_array()).collect::<Vec<_>>();
+            assert_eq!(bits(&flat(&found)), bits(&flat(&expected)));
+        }
+    }
 }
 
 #[test]

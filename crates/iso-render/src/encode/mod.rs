@@ -44,7 +44,8 @@ mod testing {
     /// Six pixels, of which one shows something.
     pub(super) fn picture() -> Picture {
         let all = Layers { depth: true, normals: true, ..Layers::COLOR };
-        let mut picture = Picture::with_room(Size::new(3, 2).unwrap(), all).unwrap();
+        let mut picture = Picture::empty(Size::new(3, 2).unwrap());
+        picture.make_room(all).unwrap();
         picture.color = (0..6).map(|pixel| [pixel, 40 * pixel, 255 - pixel]).collect();
         picture.depth = vec![f64::NAN; 6].into();
         picture.depth[4] = 1.25;

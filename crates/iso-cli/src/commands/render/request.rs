@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use iso_expr::Engine;
 use iso_grid::{Counters, GridError, Kernel, Region, Tracer};
-use iso_render::{Animation, Pass, Picture, Scene, Shading, Size, Smoothing, render};
+use iso_render::{Animation, Pass, Picture, Scene, Shading, Size, Smoothing, render_over};
 use rayon::ThreadPool;
 
 use super::shots::{Shot, Subject, shots};
@@ -102,13 +102,14 @@ impl Request {
         progress: &Progress,
     ) -> Result<Vec<Summary>, Failure> {
         let (all, of_one) = (self.pixels(), self.drawn.pixels() as u64);
-        let mut prepared = None;
+        let (mut prepared, mut picture) = (None, Picture::empty(self.drawn));
         let mut summaries: Vec<Summary> = Vec::new();
         for (shot, before) in std::mem::take(&mut self.shots).into_iter().zip((0..).step_by(of_one as usize))
         {
             let report = |done, _| progress.report(before + done, all);
-            let drawn = self.threads.install(|| self.draw(shot, region, &mut prepared, &report))?;
-            let Some((picture, mut summary)) = drawn else { break };
+            let drawn =
+                self.threads.install(|| self.draw(shot, region, &mut prepared, &mut picture, &report))?;
+            let Some(mut summary) = drawn else { break };
             if let Some(animation) = &mut animation {
                 add_to(&mut summary.milliseconds.encode, || animation.add(&picture))?;
             }
@@ -137,14 +138,16 @@ impl Request {
         Ok(fitted.expect("there is a picture to be drawn"))
     }
 
-    /// Draws a picture, writes its files and says what it took. `None` when work is stopped before anything is finished.
+    /// Draws a picture over the one before, writes its files and says what it took. `None` when work is stopped before anything is
+    /// finished.
     fn draw(
         &self,
         shot: Shot,
         region: Region,
         prepared: &mut Option<Prepared>,
+        picture: &mut Picture,
         progress: &(dyn Fn(u64, u64) + Sync),
-    ) -> Result<Option<(Picture, Summary)>, Failure> {
+    ) -> Result<Option<Summary>, Failure> {
         let Shot { subject, camera: flags, files, frame, mut phases } = shot;
         let Subject { surface, operations_before, plan } = &*subject;
         let camera = camera(&flags, &region, self.drawn)?;
@@ -168,17 +171,20 @@ impl Request {
         let tracer = &*prepared.insert(known).tracer;
         let scene = Scene { plan, surface, tracer, camera: &camera, shading: &shading };
         self.interruption.begin_work();
-        let mut picture = render(&scene, self.drawn, progress)?;
+        if picture.size != self.drawn {
+            *picture = Picture::empty(self.drawn);
+        }
+        render_over(&scene, picture, progress)?;
         if picture.counts.unfinished == self.drawn.pixels() as u64 {
             return Ok(None);
         }
         if plan.runs(Pass::Smooth) {
-            add_to(&mut phases.shade, || self.smoothing.finish(&mut picture));
+            add_to(&mut phases.shade, || self.smoothing.finish(picture));
         }
         phases.trace += 1e3 * picture.trace_seconds;
         phases.shade += 1e3 * picture.shade_seconds;
         counters += picture.counters;
-        add_to(&mut phases.encode, || files.write(&picture))?;
+        add_to(&mut phases.encode, || files.write(picture))?;
         let summary = Summary {
             files: files.names(),
             frame,
@@ -199,6 +205,6 @@ impl Request {
             counters,
             milliseconds: phases,
         };
-        Ok(Some((picture, summary)))
+        Ok(Some(summary))
     }
 }
