@@ -51,7 +51,7 @@ fn write_values(code: &mut String, name: &str, program: &Program) {
 
 fn value(program: &Program, id: NodeId) -> String {
     match program.node(id) {
-        Node::Variable(axis) => axis.name().to_owned(),
+        Node::Variable(argument) => argument.to_string(),
         Node::Constant(constant) => format!("({:?}_f64)", constant.value()),
         Node::Apply(..) => format!("v{}", id.index()),
     }
@@ -111,7 +111,7 @@ fn write_boxes(code: &mut String, name: &str, program: &Program) {
 
 fn interval(program: &Program, id: NodeId) -> String {
     match program.node(id) {
-        Node::Variable(axis) => axis.name().to_owned(),
+        Node::Variable(argument) => argument.to_string(),
         Node::Constant(constant) => {
             let enclosure = constant.enclosure();
             format!("Interval {{ lo: {:?}_f64, hi: {:?}_f64 }}", enclosure.lo, enclosure.hi)

@@ -1,6 +1,6 @@
 //! What the kernels are given: the same points and boxes for all of them.
 
-use iso_expr::engine::{Boxes, Points};
+use iso_expr::engine::Boxes;
 
 /// How many points or boxes one call is given: as many as the tracers do.
 pub const COUNT: usize = 256;
@@ -29,9 +29,8 @@ impl Batch {
     }
 
     /// The points.
-    pub fn points(&self) -> Points<'_> {
-        let [x, y, z] = &self.points;
-        Points { x, y, z }
+    pub fn points(&self) -> [&[f64]; 3] {
+        slices(&self.points)
     }
 
     /// The boxes.

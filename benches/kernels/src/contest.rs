@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use iso_expr::engine::{Enclosures, Points};
+use iso_expr::engine::Enclosures;
 use iso_expr::{
     BatchKernel, BoxKernel, CompileError, Decoration, Engine, Interpreter, PointKernel, Program, Scratch,
 };
@@ -139,7 +139,7 @@ impl<'a> Formula<'a> {
 }
 
 fn each_point<'a>(
-    Points { x, y, z }: Points<'a>,
+    [x, y, z]: [&'a [f64]; 3],
     function: impl Fn(f64, f64, f64) -> f64 + 'a,
 ) -> impl FnMut(&mut [f64]) + 'a {
     move |values| {
@@ -151,7 +151,7 @@ fn each_point<'a>(
 
 fn point_kernel<'a>(
     kernel: std::sync::Arc<dyn PointKernel>,
-    Points { x, y, z }: Points<'a>,
+    [x, y, z]: [&'a [f64]; 3],
 ) -> impl FnMut(&mut [f64]) + 'a {
     let mut scratch = Scratch::default();
     move |values| {
@@ -163,10 +163,10 @@ fn point_kernel<'a>(
 
 fn batch_kernel<'a>(
     kernel: std::sync::Arc<dyn BatchKernel>,
-    points: Points<'a>,
+    points: [&'a [f64]; 3],
 ) -> impl FnMut(&mut [f64]) + 'a {
     let mut scratch = Scratch::default();
-    move |values| kernel.evaluate(&mut scratch, points, values)
+    move |values| kernel.evaluate(&mut scratch, &points, values)
 }
 
 fn box_kernel<'a>(kernel: std::sync::Arc<dyn BoxKernel>, batch: &'a Batch) -> impl FnMut(&mut [f64]) + 'a {
@@ -179,7 +179,7 @@ fn box_kernel<'a>(kernel: std::sync::Arc<dyn BoxKernel>, batch: &'a Batch) -> im
     }
 }
 
-fn sweep<'a>(sweep: Sweep, points: Points<'a>) -> impl FnMut(&mut [f64]) + 'a {
+fn sweep<'a>(sweep: Sweep, points: [&'a [f64]; 3]) -> impl FnMut(&mut [f64]) + 'a {
     move |values| sweep(black_box(points), values)
 }
 

@@ -5,7 +5,7 @@
 use std::arch::is_x86_feature_detected;
 
 use iso_expr::Interval;
-use iso_expr::engine::{Boxes, Points};
+use iso_expr::engine::Boxes;
 
 use crate::{formulas, operations};
 
@@ -17,7 +17,7 @@ type Enclose<const OUTPUTS: usize> = fn(Interval, Interval, Interval) -> [Interv
 include!(concat!(env!("OUT_DIR"), "/straight_line.rs"));
 
 /// A kernel over batches: as the engines' kernels are, but a function alone.
-pub type Sweep = fn(Points<'_>, &mut [f64]);
+pub type Sweep = fn([&[f64]; 3], &mut [f64]);
 
 /// A kernel over boxes, writing lower and upper ends.
 pub type BoxSweep = fn(Boxes<'_>, lo: &mut [f64], hi: &mut [f64]);
@@ -79,18 +79,18 @@ macro_rules! sweeps {
             }
         }
 
-        pub(crate) fn values(points: Points<'_>, values: &mut [f64]) {
+        pub(crate) fn values([x, y, z]: [&[f64]; 3], values: &mut [f64]) {
             // SAFETY: `Native` says which processors the function may be called on: those with the features.
-            unsafe { sweep_values(points.x, points.y, points.z, values) }
+            unsafe { sweep_values(x, y, z, values) }
         }
 
-        pub(crate) fn gradients(points: Points<'_>, values: &mut [f64]) {
-            let count = points.x.len();
+        pub(crate) fn gradients([x, y, z]: [&[f64]; 3], values: &mut [f64]) {
+            let count = x.len();
             let (values, rest) = values.split_at_mut(count);
             let (along_x, rest) = rest.split_at_mut(count);
             let (along_y, along_z) = rest.split_at_mut(count);
             // SAFETY: `Native` says which processors the function may be called on: those with the features.
-            unsafe { sweep_gradients(points.x, points.y, points.z, values, along_x, along_y, along_z) }
+            unsafe { sweep_gradients(x, y, z, values, along_x, along_y, along_z) }
         }
     };
 }

@@ -18,9 +18,7 @@ pub fn fidget_graph(program: &Program) -> Result<(Context, FidgetNode), Box<dyn 
     for node in program.nodes() {
         let operands: Vec<_> = node.operands().iter().map(|operand| places[operand.index()]).collect();
         places.push(match node {
-            Node::Variable(Axis::X) => context.x(),
-            Node::Variable(Axis::Y) => context.y(),
-            Node::Variable(Axis::Z) => context.z(),
+            Node::Variable(argument) => [context.x(), context.y(), context.z()][argument.index()],
             Node::Constant(constant) => context.constant(constant.value() as f32),
             Node::Apply(operation, _) => apply(&mut context, *operation, &operands)?,
         });

@@ -190,9 +190,7 @@ fn expression(program: &Program) -> Result<String, Box<dyn Error>> {
     let mut texts: Vec<String> = Vec::with_capacity(program.nodes().len());
     for node in program.nodes() {
         let text = match node {
-            Node::Variable(Axis::X) => "x".to_owned(),
-            Node::Variable(Axis::Y) => "y".to_owned(),
-            Node::Variable(Axis::Z) => "z".to_owned(),
+            Node::Variable(argument) => argument.to_string(),
             Node::Constant(constant) => format!("({})", constant.value()),
             Node::Apply(operation, _) => {
                 let operands: Vec<&str> = operands(&texts, node.operands());

@@ -4,7 +4,6 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use glam::DVec3;
-use iso_expr::engine::Points;
 use iso_expr::{BatchKernel, PointKernel, Scratch};
 use iso_grid::Region;
 
@@ -43,7 +42,7 @@ impl SpreadPoints {
         let (mut scratch, mut values) = (Scratch::default(), vec![0.0; Self::COUNT]);
         let [x, y, z] = &self.0;
         nanoseconds_each(|| {
-            kernel.evaluate(&mut scratch, Points { x, y, z }, &mut values);
+            kernel.evaluate(&mut scratch, &[x, y, z], &mut values);
             black_box(&mut values);
         })
     }

@@ -1,6 +1,6 @@
 //! How far rounding moves the values of a formula: each value is held against its enclosure at the same point.
 
-use iso_expr::engine::{Boxes, Enclosures, Points};
+use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::{BatchKernel, BoxKernel, Decoration, Interval, Scratch};
 
 /// A value in doubles, and how far it is from what exact arithmetic gives.
@@ -43,16 +43,15 @@ pub(crate) fn rounded(
     values: &dyn BatchKernel,
     enclosures: &dyn BoxKernel,
     scratch: &mut Scratch,
-    points: Points<'_>,
+    points: [&[f64]; 3],
     outputs: usize,
 ) -> Vec<Rounded> {
-    let count = outputs * points.x.len();
+    let count = outputs * points[0].len();
     let (mut found, mut lo, mut hi) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
     let mut decoration = vec![Decoration::Trivial; count];
-    values.evaluate(scratch, points, &mut found);
-    let ends = [points.x, points.y, points.z];
+    values.evaluate(scratch, &points, &mut found);
     let room = Enclosures { lo: &mut lo, hi: &mut hi, decoration: &mut decoration };
-    enclosures.evaluate(scratch, Boxes { lo: ends, hi: ends }, room);
+    enclosures.evaluate(scratch, Boxes { lo: points, hi: points }, room);
     let ends = lo.into_iter().zip(hi);
     found.into_iter().zip(ends).map(|(value, (lo, hi))| Rounded::new(value, Interval { lo, hi })).collect()
 }
@@ -67,7 +66,7 @@ mod tests {
         let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().program().clone();
         let (values, enclosures) =
             (Interpreter.batch(&program).unwrap(), Interpreter.boxes(&program).unwrap());
-        let points = Points { x: &[x], y: &[0.0], z: &[0.0] };
+        let points = [&[x][..], &[0.0], &[0.0]];
         rounded(&*values, &*enclosures, &mut Scratch::default(), points, 1)[0]
     }
 

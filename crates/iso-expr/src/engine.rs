@@ -49,11 +49,12 @@ pub trait PointKernel: Send + Sync {
 /// Evaluates a program at many points. Immutable, so that threads share it.
 pub trait BatchKernel: Send + Sync {
     /// Writes every output of the program at every point into `values`: output `k` at point `i` stands at `k·n + i`,
-    /// where `n` is the number of points.
+    /// where `n` is the number of points. Each of the `arguments`, x, y and z for a program of F, is given for all points, and
+    /// there may be more than the program takes.
     ///
     /// # Panics
-    /// When the lengths do not fit each other.
-    fn evaluate(&self, scratch: &mut Scratch, points: Points<'_>, values: &mut [f64]);
+    /// When the lengths do not fit each other, or the program takes more arguments.
+    fn evaluate(&self, scratch: &mut Scratch, arguments: &[&[f64]], values: &mut [f64]);
 }
 
 /// Encloses a program's range over many boxes. Immutable, so that threads share it.
@@ -63,17 +64,6 @@ pub trait BoxKernel: Send + Sync {
     /// # Panics
     /// When the lengths do not fit each other.
     fn evaluate(&self, scratch: &mut Scratch, boxes: Boxes<'_>, enclosures: Enclosures<'_>);
-}
-
-/// A batch of points, coordinate by coordinate. All three slices are equally long.
-#[derive(Clone, Copy, Debug)]
-pub struct Points<'a> {
-    /// The x coordinate of each point.
-    pub x: &'a [f64],
-    /// The y coordinate of each point.
-    pub y: &'a [f64],
-    /// The z coordinate of each point.
-    pub z: &'a [f64],
 }
 
 /// A batch of boxes, end by end. All six slices are equally long; a box with a NaN end is empty.

@@ -24,4 +24,4 @@ pub use interval::{Decorated, Decoration, Extension, Interval};
 pub use language::{Ast, Formula, FormulaError, FormulaErrorKind, decode};
 pub use operation::{Chain, Operation, Value};
 pub use pieces::Pieces;
-pub use program::{Axis, Extreme, Node, NodeId, Program};
+pub use program::{Argument, Axis, Extreme, Node, NodeId, Program};

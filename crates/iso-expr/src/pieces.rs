@@ -47,7 +47,7 @@ impl Iterator for Pieces<'_> {
         self.values.clear();
         for node in self.program.nodes() {
             let value = match *node {
-                Node::Variable(axis) => common(self.domain[axis as usize]),
+                Node::Variable(argument) => common(self.domain[argument.index()]),
                 Node::Constant(constant) => common(constant.enclosure()),
                 Node::Apply(operation, operands) => fork.apply(operation, operands, &self.values),
             };

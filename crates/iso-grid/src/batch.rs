@@ -1,7 +1,7 @@
 //! Points, or boxes, gathered for one call of a kernel.
 
 use glam::DVec3;
-use iso_expr::engine::{Boxes, Enclosures, Points};
+use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::{BatchKernel, BoxKernel, Decorated, Decoration, Interval, Scratch};
 
 use crate::Ray;
@@ -68,7 +68,7 @@ impl PointBatch {
     ) -> &[f64] {
         self.values.resize(outputs * self.len(), f64::NAN);
         if self.len() > 0 {
-            kernel.evaluate(scratch, Points { x: &self.x, y: &self.y, z: &self.z }, &mut self.values);
+            kernel.evaluate(scratch, &[&self.x, &self.y, &self.z], &mut self.values);
         }
         &self.values
     }

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use iso_expr::engine::Points;
 use iso_expr::{
     Axis, BatchKernel, BoxKernel, CompileError, Engine, Operation, PointKernel, Program, Scratch,
 };
@@ -46,10 +45,10 @@ impl Engine for Functions {
 }
 
 impl BatchKernel for Functions {
-    fn evaluate(&self, _: &mut Scratch, points: Points<'_>, values: &mut [f64]) {
-        let count = points.x.len();
+    fn evaluate(&self, _: &mut Scratch, arguments: &[&[f64]], values: &mut [f64]) {
+        let count = arguments[0].len();
         for number in 0..count {
-            let point = DVec3::new(points.x[number], points.y[number], points.z[number]);
+            let point = DVec3::from_array([0, 1, 2].map(|axis| arguments[axis][number]));
             values[number] = (self.value)(point);
             if values.len() == 4 * count {
                 let gradient = (self.gradient)(point);

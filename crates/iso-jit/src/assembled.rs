@@ -118,7 +118,7 @@ impl Assembled {
             };
             match node {
                 Node::Constant(_) => constants.extend(in_memory(*range)),
-                Node::Variable(axis) => arguments.push((*axis as usize, place)),
+                Node::Variable(argument) => arguments.push((argument.index(), place)),
                 Node::Apply(operation, operands) => {
                     let apply = functions.next().expect("a function for each operation");
                     let operands = operands.map(|operand| places[operand.index()]);

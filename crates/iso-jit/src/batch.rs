@@ -3,8 +3,7 @@
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{AbiParam, InstBuilder, Signature, Value, types};
 use cranelift_frontend::FunctionBuilder;
-use iso_expr::engine::Points;
-use iso_expr::{Axis, BatchKernel, Node, Operation, Program, Scratch};
+use iso_expr::{Argument, BatchKernel, Node, Operation, Program, Scratch};
 
 use crate::code::{Blueprint, Compiled};
 use crate::elementary;
@@ -29,31 +28,38 @@ const WIDEST: usize = PAIR * MOST_PAIRS;
 /// compile.
 const LARGEST_SIDE_BY_SIDE: usize = 400;
 
-/// x, y and z of `count` points, where the outputs go, and `count`, which is not less than the points of one round.
-type Evaluate = unsafe extern "C" fn(*const f64, *const f64, *const f64, *mut f64, usize);
+/// The most arguments: those of [forms](Program::with_forms).
+const MOST_ARGUMENTS: usize = 3 * Program::FORM;
+
+/// Where each argument of `count` points stands, where the outputs go, and `count`, which is not less than the points of one round.
+type Evaluate = unsafe extern "C" fn(*const *const f64, *mut f64, usize);
 
 /// A kernel over batches of points, as native code.
 pub(crate) struct NativeBatch {
     compiled: Compiled<Evaluate>,
+    arguments: usize,
     outputs: usize,
     width: usize,
 }
 
 impl NativeBatch {
     pub(crate) fn new(blueprint: &BatchBlueprint<'_>, compiled: Compiled<Evaluate>) -> Self {
-        Self { compiled, outputs: blueprint.program.outputs().len(), width: blueprint.width() }
+        let program = blueprint.program;
+        let (arguments, outputs) = (program.arguments(), program.outputs().len());
+        assert!(arguments <= MOST_ARGUMENTS, "no program takes more arguments than forms do");
+        Self { compiled, arguments, outputs, width: blueprint.width() }
     }
 
-    /// Evaluates fewer points than one round has: the last one is repeated to fill the round.
-    fn evaluate_few(&self, scratch: &mut Scratch, points: Points<'_>, values: &mut [f64]) {
-        let count = points.x.len();
-        let padded = |from: &[f64]| std::array::from_fn::<f64, WIDEST, _>(|place| from[place.min(count - 1)]);
-        let (x, y, z) = (padded(points.x), padded(points.y), padded(points.z));
-        let outputs = scratch.values(self.outputs * self.width);
-        // SAFETY: `width` points, not more than `WIDEST`, are there, and room for as many of each output.
-        unsafe {
-            (self.compiled.function)(x.as_ptr(), y.as_ptr(), z.as_ptr(), outputs.as_mut_ptr(), self.width);
+    /// Evaluates fewer points than one round has, but some: the last one is repeated to fill the round.
+    fn evaluate_few(&self, scratch: &mut Scratch, arguments: &[&[f64]], count: usize, values: &mut [f64]) {
+        let mut padded = [[0.0; WIDEST]; MOST_ARGUMENTS];
+        for (padded, argument) in padded.iter_mut().zip(arguments) {
+            *padded = std::array::from_fn(|place| argument[place.min(count - 1)]);
         }
+        let addresses = padded.each_ref().map(|argument| argument.as_ptr());
+        let outputs = scratch.values(self.outputs * self.width);
+        // SAFETY: of each argument `width` values, not more than `WIDEST`, are there, and room for as many of each output.
+        unsafe { (self.compiled.function)(addresses.as_ptr(), outputs.as_mut_ptr(), self.width) };
         for (values, outputs) in values.chunks_exact_mut(count).zip(outputs.chunks_exact(self.width)) {
             values.copy_from_slice(&outputs[..count]);
         }
@@ -61,19 +67,21 @@ impl NativeBatch {
 }
 
 impl BatchKernel for NativeBatch {
-    fn evaluate(&self, scratch: &mut Scratch, points: Points<'_>, values: &mut [f64]) {
-        let Points { x, y, z } = points;
-        let count = x.len();
-        assert!(y.len() == count && z.len() == count, "as many of each coordinate");
+    fn evaluate(&self, scratch: &mut Scratch, arguments: &[&[f64]], values: &mut [f64]) {
+        let count = arguments.first().map_or(0, |argument| argument.len());
+        assert!(arguments.iter().all(|argument| argument.len() == count), "as many of each argument");
         assert_eq!(values.len(), self.outputs * count, "room for every output at every point");
+        let arguments = &arguments[..self.arguments];
         if count >= self.width {
-            // SAFETY: there are `count` of each coordinate, enough for one round, and room for as many of each output;
-            // none of it overlaps what is written, which is borrowed mutably.
-            unsafe {
-                (self.compiled.function)(x.as_ptr(), y.as_ptr(), z.as_ptr(), values.as_mut_ptr(), count);
+            let mut addresses = [std::ptr::null(); MOST_ARGUMENTS];
+            for (address, argument) in addresses.iter_mut().zip(arguments) {
+                *address = argument.as_ptr();
             }
+            // SAFETY: there are `count` of each argument that is taken, enough for one round, and room for as many of each
+            // output; none of it overlaps what is written, which is borrowed mutably.
+            unsafe { (self.compiled.function)(addresses.as_ptr(), values.as_mut_ptr(), count) };
         } else if count > 0 {
-            self.evaluate_few(scratch, points, values);
+            self.evaluate_few(scratch, arguments, count, values);
         }
     }
 }
@@ -102,13 +110,13 @@ impl Blueprint for BatchBlueprint<'_> {
     type Function = Evaluate;
 
     fn sign(&self, signature: &mut Signature) {
-        signature.params.extend([AbiParam::new(types::I64); 5]);
+        signature.params.extend([AbiParam::new(types::I64); 3]);
     }
 
     fn write(&self, builder: &mut FunctionBuilder<'_>, calls: &mut Calls<'_>) {
         let entry = builder.current_block().expect("writing begins in the entry block");
-        let &[x, y, z, values, count] = builder.block_params(entry) else {
-            unreachable!("five parameters were signed")
+        let &[arguments, values, count] = builder.block_params(entry) else {
+            unreachable!("three parameters were signed")
         };
         // All offsets are in bytes.
         let step = size_of::<f64>() * self.width();
@@ -120,7 +128,7 @@ impl Blueprint for BatchBlueprint<'_> {
         builder.ins().jump(round, &[first.into()]);
 
         builder.switch_to_block(round);
-        self.write_round(builder, calls, [x, y, z], values, stride, offset);
+        self.write_round(builder, calls, arguments, values, stride, offset);
         let next = builder.ins().iadd_imm_s(offset, step as i64);
         let beyond = builder.ins().icmp(IntCC::UnsignedGreaterThan, next, last);
         let next = builder.ins().select(beyond, last, next);
@@ -143,18 +151,19 @@ impl BatchBlueprint<'_> {
         &self,
         builder: &mut FunctionBuilder<'_>,
         calls: &mut Calls<'_>,
-        coordinates: [Value; 3],
+        arguments: Value,
         values: Value,
         stride: Value,
         offset: Value,
     ) {
         let mut writer = Writer::new(builder, Lanes::Two);
-        let addresses = coordinates.map(|start| writer.builder.ins().iadd(start, offset));
         let displacement = |pair: usize| (size_of::<f64>() * PAIR * pair) as i32;
-        let arguments: Vec<_> = (0..self.pairs)
-            .map(|pair| addresses.map(|address| writer.load(address, displacement(pair))))
-            .collect();
-        let outputs = values::evaluate(&mut writer, calls, self.program, &arguments);
+        let argument = |writer: &mut Writer<'_, '_>, argument: Argument| {
+            let start = writer.load_address(arguments, argument.index());
+            let address = writer.builder.ins().iadd(start, offset);
+            (0..self.pairs).map(|pair| writer.load(address, displacement(pair))).collect()
+        };
+        let outputs = values::evaluate(&mut writer, calls, self.program, self.pairs, argument);
         let mut address = writer.builder.ins().iadd(values, offset);
         for output in 0..self.program.outputs().len() {
             for (pair, outputs) in outputs.iter().enumerate() {
@@ -202,7 +211,8 @@ fn most_alive(program: &Program) -> usize {
     }
     // Outputs are written at the end.
     program.outputs().iter().for_each(|output| last_reader[output.index()] = usize::MAX);
-    let (mut alive, mut most) = (Axis::ALL.iter().filter(|axis| program.takes(**axis)).count(), 0);
+    let is_argument = |node: &&Node| matches!(node, Node::Variable(_));
+    let (mut alive, mut most) = (program.nodes().iter().filter(is_argument).count(), 0);
     for (id, node) in program.iter() {
         for (place, operand) in node.operands().iter().enumerate() {
             let is_repeated = node.operands()[..place].contains(operand);

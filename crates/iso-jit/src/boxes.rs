@@ -193,7 +193,7 @@ impl Round<'_, '_> {
                 self.writer.forget_constants();
             }
             enclosures.push(match node {
-                Node::Variable(axis) => self.argument(*axis as usize, *range),
+                Node::Variable(argument) => self.argument(argument.index(), *range),
                 Node::Constant(_) => enclosures::constant(&mut self.writer, *range),
                 Node::Apply(operation @ (Operation::Sin | Operation::Cos), [operand, ..])
                     if elementary::sines_and_cosines().is_some() =>

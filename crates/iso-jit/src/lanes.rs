@@ -74,6 +74,12 @@ impl Writer<'_, '_> {
         self.constants.clear();
     }
 
+    /// The address at a place of a list of addresses.
+    pub(crate) fn load_address(&mut self, list: Value, place: usize) -> Value {
+        let offset = (size_of::<usize>() * place) as i32;
+        self.builder.ins().load(types::I64, slice_access(), list, offset)
+    }
+
     /// The doubles that stand `offset` bytes after `address`.
     pub(crate) fn load(&mut self, address: Value, offset: i32) -> Value {
         self.builder.ins().load(self.lanes.ty(), slice_access(), address, offset)

@@ -104,7 +104,8 @@ fn outputs(
     arguments: [Value; 3],
 ) -> Vec<Value> {
     let mut writer = Writer::new(builder, Lanes::One);
-    values::evaluate(&mut writer, calls, program, &[arguments]).remove(0)
+    values::evaluate(&mut writer, calls, program, 1, |_, argument| vec![arguments[argument.index()]])
+        .remove(0)
 }
 
 fn parameters<'a>(builder: &'a FunctionBuilder<'_>) -> &'a [Value] {

@@ -2,7 +2,7 @@
 
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{InstBuilder, Value};
-use iso_expr::{Node, Operation, Program};
+use iso_expr::{Argument, Node, NodeId, Operation, Program};
 
 use crate::elementary;
 use crate::lanes::Writer;
@@ -25,37 +25,35 @@ fn is_rounding(operation: Operation) -> bool {
     matches!(operation, O::Floor | O::Ceil | O::Round | O::Truncate)
 }
 
-/// Writes one evaluation of `program` for each of `arguments`, the values of x, y and z, side by side so that the
-/// processor works on all of them at once. Gives the outputs of each.
+/// Writes `count` evaluations of `program` side by side, so that the processor works on all of them at once. `argument` gives an
+/// argument of each when it is first needed. Gives the outputs of each.
 pub(crate) fn evaluate(
     writer: &mut Writer<'_, '_>,
     calls: &mut Calls<'_>,
     program: &Program,
-    arguments: &[[Value; 3]],
+    count: usize,
+    mut argument: impl FnMut(&mut Writer<'_, '_>, Argument) -> Vec<Value>,
 ) -> Vec<Vec<Value>> {
-    let mut values: Vec<Vec<Value>> = vec![Vec::with_capacity(program.nodes().len()); arguments.len()];
-    let fill_lanes = arguments.len() * writer.lanes.count() == elementary::WIDTH;
+    let mut values: Vec<Vec<Value>> = vec![Vec::with_capacity(program.nodes().len()); count];
+    let fill_lanes = count * writer.lanes.count() == elementary::WIDTH;
     for node in program.nodes() {
-        if let Node::Apply(operation, [operand, ..]) = node
-            && fill_lanes
-            && let Some(function) = calls.in_lanes(writer.builder.func, *operation)
-        {
-            let operands: Vec<_> = values.iter().map(|values| values[operand.index()]).collect();
-            let results = writer.call_in_place(function, &operands);
-            values.iter_mut().zip(results).for_each(|(values, result)| values.push(result));
-            continue;
-        }
-        for (values, arguments) in values.iter_mut().zip(arguments) {
-            let value = match node {
-                Node::Variable(axis) => arguments[*axis as usize],
-                Node::Constant(constant) => writer.constant(constant.value()),
-                Node::Apply(operation, operands) => {
-                    let operands = operands.map(|id| values[id.index()]);
-                    apply(writer, calls, *operation, operands)
+        let of = |operand: NodeId| values.iter().map(move |values| values[operand.index()]);
+        let results: Vec<Value> = match node {
+            Node::Variable(number) => argument(writer, *number),
+            Node::Constant(constant) => vec![writer.constant(constant.value()); count],
+            Node::Apply(operation, operands) => {
+                let in_lanes = fill_lanes.then(|| calls.in_lanes(writer.builder.func, *operation)).flatten();
+                match in_lanes {
+                    Some(function) => writer.call_in_place(function, &of(operands[0]).collect::<Vec<_>>()),
+                    None => {
+                        let [a, b, c] = operands.map(of);
+                        let operands = a.zip(b).zip(c).map(|((a, b), c)| [a, b, c]);
+                        operands.map(|operands| apply(writer, calls, *operation, operands)).collect()
+                    }
                 }
-            };
-            values.push(value);
-        }
+            }
+        };
+        values.iter_mut().zip(results).for_each(|(values, result)| values.push(result));
     }
     let outputs = |values: Vec<Value>| program.outputs().iter().map(|id| values[id.index()]).collect();
     values.into_iter().map(outputs).collect()

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 use std::thread;
 
-use iso_expr::engine::Points;
 use iso_expr::random::Random;
 use iso_expr::{Axis, BatchKernel, CompileError, Engine, Operation, Program, Scratch};
 use iso_jit::{Jit, Kind};
@@ -25,7 +24,7 @@ fn deep_program(terms: u32) -> Program {
 /// The kernel's value at (x, y, 0).
 fn value(kernel: &dyn BatchKernel, x: f64, y: f64) -> f64 {
     let mut values = [0.0];
-    kernel.evaluate(&mut Scratch::default(), Points { x: &[x], y: &[y], z: &[0.0] }, &mut values);
+    kernel.evaluate(&mut Scratch::default(), &[&[x], &[y], &[0.0]], &mut values);
     values[0]
 }
 

@@ -4,7 +4,6 @@
 use std::fs;
 use std::sync::Arc;
 
-use iso_expr::engine::Points;
 use iso_expr::random::Random;
 use iso_expr::{Engine, Scratch};
 use iso_jit::Jit;
@@ -36,8 +35,8 @@ fn code_memory_is_given_back_and_never_both_writable_and_executable() {
             let kernel = jit.batch(&program).unwrap();
             let other_user = Arc::clone(&kernel);
             drop(kernel);
-            let points = Points { x: &[1.0], y: &[2.0], z: &[3.0] };
-            other_user.evaluate(&mut Scratch::default(), points, &mut [0.0]);
+            let points = [&[1.0][..], &[2.0], &[3.0]];
+            other_user.evaluate(&mut Scratch::default(), &points, &mut [0.0]);
             jit.point(&program).unwrap();
             jit.boxes(&program).unwrap();
         }

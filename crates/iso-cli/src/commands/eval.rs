@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use iso_expr::engine::{Boxes, Enclosures, Points};
+use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::{Decoration, Engine, Program, Scratch};
 
 use crate::engine::engine;
@@ -54,7 +54,7 @@ fn at_points(
         let mut values = Vec::new();
         for ((x, y), z) in x.chunks(BATCH).zip(y.chunks(BATCH)).zip(z.chunks(BATCH)) {
             values.resize(outputs * x.len(), 0.0);
-            kernel.evaluate(&mut scratch, Points { x, y, z }, &mut values);
+            kernel.evaluate(&mut scratch, &[x, y, z], &mut values);
             for row in 0..x.len() {
                 table.row((0..outputs).map(|output| digits(values[output * x.len() + row])))?;
             }
@@ -82,7 +82,7 @@ fn with_errors(
         let columns = VALUE_COLUMNS[..outputs].iter().flat_map(columns).collect();
         let mut table = TableWriter::new(writer, columns, form)?;
         for ((x, y), z) in x.chunks(BATCH).zip(y.chunks(BATCH)).zip(z.chunks(BATCH)) {
-            let found = rounded(&*values, &*enclosures, &mut scratch, Points { x, y, z }, outputs);
+            let found = rounded(&*values, &*enclosures, &mut scratch, [x, y, z], outputs);
             for row in 0..x.len() {
                 let places = (0..outputs).map(|output| found[output * x.len() + row]);
                 table.row(places.flat_map(Rounded::fields))?;

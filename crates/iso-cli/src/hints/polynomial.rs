@@ -4,7 +4,7 @@
 
 use std::cmp::Reverse;
 
-use iso_expr::{Axis, Node, NodeId, Operation};
+use iso_expr::{Argument, Node, NodeId, Operation};
 
 use super::{Hint, Parts};
 
@@ -21,13 +21,13 @@ enum Form {
     Constant,
     /// A power of the base, perhaps with a factor or a sign.
     Term {
-        base: Axis,
+        base: Argument,
         power: u32,
         is_bare: bool,
     },
     /// Several of these.
     Sum {
-        base: Axis,
+        base: Argument,
         terms: usize,
     },
     /// No polynomial that is written out.
@@ -129,7 +129,7 @@ fn hint(parts: &Parts<'_>, forms: &[Form], id: NodeId) -> Option<Hint> {
     let Form::Sum { base, .. } = forms[id.index()] else { return None };
     let mut terms = Vec::new();
     collect(parts, forms, (id, false), &mut terms);
-    let base = base.name();
+    let base = &base.to_string();
     let written = written_out(base, &terms);
     terms.sort_by_key(|term| Reverse(term.power));
     let is_long = terms.len() >= FEWEST_TERMS && terms[0].power >= LEAST_DEGREE;

@@ -13,7 +13,7 @@ pub(super) fn value(program: &Program, point: [f64; 3]) -> BigFloat {
     let mut values: Vec<BigFloat> = Vec::new();
     for node in program.nodes() {
         let value = match node {
-            Node::Variable(axis) => exactly(point[*axis as usize]),
+            Node::Variable(argument) => exactly(point[argument.index()]),
             Node::Constant(constant) => {
                 assert!(constant.is_exact(), "no formula of these tests has another constant");
                 exactly(constant.value())

@@ -27,7 +27,7 @@ impl Parts<'_> {
     fn text(&self, id: NodeId, depth: usize) -> String {
         let node = self.0.node(id);
         let operation = match node {
-            Node::Variable(axis) => return axis.name().to_owned(),
+            Node::Variable(argument) => return argument.to_string(),
             Node::Constant(constant) => return name(constant),
             Node::Apply(..) if depth == 0 => return "…".to_owned(),
             Node::Apply(operation, _) => operation,

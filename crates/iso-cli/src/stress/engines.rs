@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use iso_expr::engine::{Boxes, Enclosures, Points};
+use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::random::Random;
 use iso_expr::{CompileError, Decoration, Engine, Interval, Program, Scratch};
 use iso_grid::Region;
@@ -117,7 +117,7 @@ impl Answers {
         let mut scratch = Scratch::default();
         let [x, y, z] = places.points.each_ref().map(|column| &column[..]);
         let mut values = vec![0.0; OUTPUTS * x.len()];
-        engine.batch(program)?.evaluate(&mut scratch, Points { x, y, z }, &mut values);
+        engine.batch(program)?.evaluate(&mut scratch, &[x, y, z], &mut values);
         let kernel = engine.boxes(program)?;
         let mut enclose = |lo: [&[f64]; 3], hi: [&[f64]; 3]| {
             let count = OUTPUTS * lo[0].len();

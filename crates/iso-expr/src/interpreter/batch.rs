@@ -3,7 +3,7 @@
 use super::block::{self, Block, Loop, Operand};
 use super::code::Code;
 use super::dispatch::{Visitor, visit};
-use crate::engine::{BatchKernel, Points, Scratch};
+use crate::engine::{BatchKernel, Scratch};
 
 /// A kernel over batches of points.
 #[derive(Debug)]
@@ -23,19 +23,16 @@ impl Batch {
 }
 
 impl BatchKernel for Batch {
-    fn evaluate(&self, scratch: &mut Scratch, points: Points<'_>, values: &mut [f64]) {
-        let Points { x, y, z } = points;
-        let count = x.len();
-        assert!(y.len() == count && z.len() == count, "three coordinates for each point");
+    fn evaluate(&self, scratch: &mut Scratch, arguments: &[&[f64]], values: &mut [f64]) {
+        let count = arguments.first().map_or(0, |argument| argument.len());
+        assert!(arguments.iter().all(|argument| argument.len() == count), "all arguments of each point");
+        let arguments = &arguments[..self.code.arguments];
         assert_eq!(values.len(), count * self.code.outputs.len(), "one value for each output and point");
         let registers = scratch.values(self.code.registers * self.block);
         for start in (0..count).step_by(self.block) {
             let range = start..count.min(start + self.block);
-            let block = Block {
-                arguments: [x, y, z].map(|coordinates| &coordinates[range.clone()]),
-                constants: &self.constants,
-                stride: self.block,
-            };
+            let block =
+                Block { arguments, places: range.clone(), constants: &self.constants, stride: self.block };
             block.run(&self.code, registers, |operation, lanes| visit(operation, lanes));
             for (output, values) in self.code.outputs.iter().zip(values.chunks_exact_mut(count)) {
                 match block.output(*output, registers) {

@@ -1,5 +1,7 @@
 //! Instructions over blocks: a register holds one value for each point or box of a block.
 
+use std::ops::Range;
+
 use super::code::{Code, Instruction, Slot};
 use crate::Operation;
 
@@ -18,8 +20,10 @@ pub(super) fn length<T>(registers: usize) -> usize {
 
 /// What instructions read besides registers while they run over one block.
 pub(super) struct Block<'a, T> {
-    /// The block's x, y and z, equally long.
-    pub(super) arguments: [&'a [T]; 3],
+    /// The arguments of this block and others.
+    pub(super) arguments: &'a [&'a [T]],
+    /// Where those of this block stand.
+    pub(super) places: Range<usize>,
     pub(super) constants: &'a [T],
     /// The length of a register; the block itself may be shorter.
     pub(super) stride: usize,
@@ -47,7 +51,7 @@ impl<T: Copy> Block<'_, T> {
     }
 
     fn length(&self) -> usize {
-        self.arguments[0].len()
+        self.places.len()
     }
 
     /// The operand at `slot`; `register` gives what stands from a place among the registers.
@@ -55,11 +59,11 @@ impl<T: Copy> Block<'_, T> {
     fn operand<'a>(&'a self, slot: Slot, register: impl FnOnce(usize) -> &'a [T]) -> Operand<'a, T> {
         let slot = slot as usize;
         if let Some(argument) = self.arguments.get(slot) {
-            Operand::Lanes(argument)
-        } else if let Some(constant) = self.constants.get(slot - Code::FIRST_CONSTANT) {
+            Operand::Lanes(&argument[self.places.clone()])
+        } else if let Some(constant) = self.constants.get(slot - self.arguments.len()) {
             Operand::Constant(*constant)
         } else {
-            let register = register((slot - Code::FIRST_CONSTANT - self.constants.len()) * self.stride);
+            let register = register((slot - self.arguments.len() - self.constants.len()) * self.stride);
             Operand::Lanes(&register[..self.length()])
         }
     }

@@ -46,9 +46,10 @@ impl BoxKernel for Boxed {
                     *argument = Decorated::argument(*lo, *hi);
                 }
             }
-            let argument = |axis: usize| &arguments[axis * self.block..][..length];
+            let argument = |axis: usize| &arguments[axis * self.block..];
             let block = Block {
-                arguments: [argument(0), argument(1), argument(2)],
+                arguments: &[argument(0), argument(1), argument(2)],
+                places: 0..length,
                 constants: &self.constants,
                 stride: self.block,
             };

@@ -2,7 +2,7 @@
 
 use crate::{Axis, Constant, Node, NodeId, Operation, Program};
 
-/// The place of a value while a program runs: first x, y and z, then the constants, then the registers.
+/// The place of a value while a program runs: first the arguments, then the constants, then the registers.
 pub(super) type Slot = u32;
 
 /// One operation: where its operands are, and where its result goes.
@@ -18,6 +18,8 @@ pub(super) struct Instruction {
 /// A program, its values assigned to slots.
 #[derive(Debug)]
 pub(super) struct Code {
+    /// How many arguments there are: x, y and z, if not more.
+    pub(super) arguments: usize,
     pub(super) instructions: Vec<Instruction>,
     pub(super) constants: Vec<Constant>,
     /// How many registers there are.
@@ -26,9 +28,6 @@ pub(super) struct Code {
 }
 
 impl Code {
-    /// The slot of the first constant.
-    pub(super) const FIRST_CONSTANT: usize = Axis::ALL.len();
-
     /// Code for `program`, every node of which some output needs.
     pub(super) fn new(program: &Program) -> Self {
         let constants: Vec<Constant> = program
@@ -36,14 +35,16 @@ impl Code {
             .iter()
             .filter_map(|node| if let Node::Constant(constant) = node { Some(*constant) } else { None })
             .collect();
-        let mut code = Self { instructions: Vec::new(), constants, registers: 0, outputs: Vec::new() };
+        let arguments = program.arguments().max(Axis::ALL.len());
+        let mut code =
+            Self { arguments, instructions: Vec::new(), constants, registers: 0, outputs: Vec::new() };
         code.assign_slots(program);
         code
     }
 
     /// The slot of the first register.
     pub(super) fn first_register(&self) -> usize {
-        Self::FIRST_CONSTANT + self.constants.len()
+        self.arguments + self.constants.len()
     }
 
     /// Walks the nodes in order, gives each operation the register that was freed last, and frees registers after the
@@ -53,10 +54,10 @@ impl Code {
         let first_register = self.first_register();
         let mut slots: Vec<Slot> = Vec::with_capacity(program.nodes().len());
         let mut free: Vec<u32> = Vec::new();
-        let mut constants = Self::FIRST_CONSTANT..;
+        let mut constants = self.arguments..;
         for (id, node) in program.iter() {
             let slot = match node {
-                Node::Variable(axis) => *axis as usize,
+                Node::Variable(argument) => argument.index(),
                 Node::Constant(_) => constants.next().expect("the range has no end"),
                 Node::Apply(operation, operands) => {
                     // Taken before the operands' registers are freed, so that no loop reads what it writes.

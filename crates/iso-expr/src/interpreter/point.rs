@@ -23,7 +23,7 @@ impl PointKernel for Point {
         assert_eq!(values.len(), self.code.outputs.len(), "one value for each output");
         let first_register = self.code.first_register();
         let slots = scratch.values(first_register + self.code.registers);
-        let (arguments, others) = slots.split_at_mut(Code::FIRST_CONSTANT);
+        let (arguments, others) = slots.split_at_mut(self.code.arguments);
         arguments.copy_from_slice(&[x, y, z]);
         others[..self.constants.len()].copy_from_slice(&self.constants);
         for instruction in &self.code.instructions {

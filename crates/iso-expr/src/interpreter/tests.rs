@@ -1,5 +1,4 @@
 use super::Interpreter;
-use crate::engine::Points;
 use crate::program::reference::assert_same;
 use crate::random::Random;
 use crate::{Axis, Engine, Operation, Program, Scratch};
@@ -11,7 +10,7 @@ fn check_points(program: &Program, scratch: &mut Scratch, points: &[[f64; 3]]) {
     let [x, y, z] = Axis::ALL.map(|axis| points.iter().map(|point| point[axis as usize]).collect::<Vec<_>>());
     let outputs = program.outputs().len();
     let mut batch_values = vec![0.5; points.len() * outputs];
-    batch_kernel.evaluate(scratch, Points { x: &x, y: &y, z: &z }, &mut batch_values);
+    batch_kernel.evaluate(scratch, &[&x, &y, &z], &mut batch_values);
     let mut point_values = vec![0.5; outputs];
     for (index, point) in points.iter().enumerate() {
         point_kernel.evaluate(scratch, point[0], point[1], point[2], &mut point_values);

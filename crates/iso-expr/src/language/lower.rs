@@ -333,7 +333,7 @@ mod tests {
     #[test]
     fn what_is_not_used_leaves_nothing() {
         let formula = lower("a := sqrt(2); b := exp(3); f(u) := ln(u); x");
-        assert_eq!(formula.program().nodes(), [Node::Variable(Axis::X)]);
+        assert_eq!(formula.program().nodes(), [Node::Variable(Axis::X.into())]);
         let expected = [("a".to_owned(), std::f64::consts::SQRT_2), ("b".to_owned(), 20.085536923187668)];
         assert_eq!(formula.parameters(), expected);
     }

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::{Axis, Node, NodeId, Program};
+use super::{Argument, Axis, Node, NodeId, Program};
 use crate::{Constant, Operation};
 
 /// Lists the operations in order, `v7 = v3 * x`, then what each output is. Variables and constants stand where they are
@@ -72,6 +72,15 @@ impl<'a> Listing<'a> {
     }
 }
 
+impl Display for Argument {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match Axis::ALL.get(self.index()) {
+            Some(axis) => write!(f, "{}", axis.name()),
+            None => write!(f, "a{}", self.index()),
+        }
+    }
+}
+
 /// A node where another one uses it.
 struct Operand {
     node: Node,
@@ -82,7 +91,7 @@ struct Operand {
 impl Display for Operand {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self.node {
-            Node::Variable(axis) => write!(f, "{}", axis.name()),
+            Node::Variable(argument) => write!(f, "{argument}"),
             Node::Constant(constant) => write_constant(f, constant),
             Node::Apply(..) => write!(f, "v{}", self.number),
         }

@@ -49,7 +49,7 @@ impl Program {
                 (Node::Constant(_), _) => [None; 3],
                 (Node::Variable(along), _) => {
                     let one = program.literal(1.0);
-                    Axis::ALL.map(|axis| (axis == *along).then_some(one))
+                    Axis::ALL.map(|axis| (*along == axis.into()).then_some(one))
                 }
                 (Node::Apply(operation, originals), Node::Apply(_, operands)) => Axis::ALL.map(|axis| {
                     let derivatives = originals.map(|operand| gradients[operand.index()][axis as usize]);

@@ -2,6 +2,7 @@
 
 mod display;
 mod extreme;
+mod forms;
 mod gradient;
 mod powers;
 mod rebuild;
@@ -10,6 +11,8 @@ pub(crate) mod reference;
 mod rounding;
 mod shorten;
 mod simplify;
+#[cfg(test)]
+mod twofold;
 
 use std::hash::{Hash, Hasher};
 
@@ -44,6 +47,24 @@ impl Axis {
     }
 }
 
+/// An argument of a program, by number. Those of F are x, y and z, with the numbers 0, 1 and 2; [forms](Program::with_forms) take
+/// more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Argument(u8);
+
+impl Argument {
+    /// Its number.
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+impl From<Axis> for Argument {
+    fn from(axis: Axis) -> Self {
+        Self(axis as u8)
+    }
+}
+
 /// The place of a node in its [`Program`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct NodeId(u32);
@@ -58,8 +79,8 @@ impl NodeId {
 /// One value of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Node {
-    /// An argument of F.
-    Variable(Axis),
+    /// An argument.
+    Variable(Argument),
     /// A constant.
     Constant(Constant),
     /// An operation on earlier nodes. Only the first [`Operation::arity`] operands count; the rest repeat the first one.
@@ -145,7 +166,13 @@ impl Program {
 
     /// Whether the argument along `axis` occurs. A simplified program holds nothing that its outputs do not need.
     pub fn takes(&self, axis: Axis) -> bool {
-        self.nodes.contains(&Node::Variable(axis))
+        self.nodes.contains(&Node::Variable(axis.into()))
+    }
+
+    /// How many arguments there are, up to the last one that occurs.
+    pub fn arguments(&self) -> usize {
+        let number = |node: &Node| if let Node::Variable(argument) = node { argument.index() + 1 } else { 0 };
+        self.nodes.iter().map(number).max().unwrap_or(0)
     }
 
     /// How many operations one evaluation takes.
@@ -155,7 +182,7 @@ impl Program {
 
     /// The argument of F along `axis`.
     pub fn variable(&mut self, axis: Axis) -> NodeId {
-        self.intern(Node::Variable(axis))
+        self.intern(Node::Variable(axis.into()))
     }
 
     /// A constant.

@@ -32,7 +32,7 @@ impl Program {
     /// Adds the nodes of `other` to this program, `variables` standing for x, y and z, and returns where its outputs are.
     pub fn import(&mut self, other: &Self, variables: [NodeId; 3]) -> Vec<NodeId> {
         self.import_with(other, |program, node| match node {
-            Node::Variable(axis) => variables[axis as usize],
+            Node::Variable(argument) => variables[argument.index()],
             node => program.intern(node),
         })
     }

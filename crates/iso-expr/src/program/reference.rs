@@ -4,18 +4,18 @@ use super::{Node, Program};
 use crate::Value;
 
 impl Program {
-    /// The outputs at `point`, by the table alone.
-    pub fn evaluate(&self, point: [f64; 3]) -> Vec<f64> {
-        let values = self.evaluate_nodes(point);
+    /// The outputs for these arguments, by the table alone.
+    pub fn evaluate(&self, arguments: impl AsRef<[f64]>) -> Vec<f64> {
+        let values = self.evaluate_nodes(arguments);
         self.outputs.iter().map(|output| values[output.index()]).collect()
     }
 
-    /// Every node at `point`, in turn by the table's value.
-    pub fn evaluate_nodes(&self, point: [f64; 3]) -> Vec<f64> {
+    /// Every node for these arguments, in turn by the table's value.
+    pub fn evaluate_nodes(&self, arguments: impl AsRef<[f64]>) -> Vec<f64> {
         let mut values: Vec<f64> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
             values.push(match node {
-                Node::Variable(axis) => point[*axis as usize],
+                Node::Variable(argument) => arguments.as_ref()[argument.index()],
                 Node::Constant(constant) => constant.value(),
                 Node::Apply(operation, operands) => {
                     let [a, b, c] = operands.map(|operand| values[operand.index()]);

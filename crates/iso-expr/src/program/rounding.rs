@@ -46,7 +46,7 @@ impl Program {
             }
             match *node {
                 Node::Constant(_) => {}
-                Node::Variable(axis) => gradient[axis as usize] = Some(slope),
+                Node::Variable(argument) => gradient[argument.index()] = Some(slope),
                 Node::Apply(operation, originals) => {
                     let operands = originals.map(|operand| places[operand.index()]);
                     for (number, original) in originals.into_iter().enumerate().take(operation.arity()) {
@@ -125,4 +125,4 @@ impl Program {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -69,8 +69,8 @@ impl Program {
         let mut enclosures: Vec<Decorated> = Vec::with_capacity(self.nodes.len());
         let decide = |node: &Node| {
             let (enclosure, decision) = match *node {
-                Node::Variable(axis) => {
-                    let Interval { lo, hi } = domain[axis as usize];
+                Node::Variable(argument) => {
+                    let Interval { lo, hi } = domain[argument.index()];
                     (Decorated::argument(lo, hi), None)
                 }
                 Node::Constant(constant) => (Decorated::constant(constant.enclosure()), None),

@@ -48,7 +48,7 @@ impl Polynomial {
         let mut terms = Vec::with_capacity(program.nodes().len());
         for node in program.nodes() {
             let term = match *node {
-                Node::Variable(axis) => polynomial.push(Term::Variable(axis as usize))?,
+                Node::Variable(argument) => polynomial.push(Term::Variable(argument.index()))?,
                 Node::Constant(constant) => polynomial.push(Term::Constant(constant.enclosure()))?,
                 Node::Apply(operation, operands) => polynomial.apply(program, &terms, operation, operands)?,
             };

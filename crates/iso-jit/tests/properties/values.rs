@@ -1,6 +1,5 @@
 //! What holds of any program at any points: native code gives the interpreter's values, bit for bit.
 
-use iso_expr::engine::Points;
 use iso_expr::random::Random;
 use iso_expr::{Engine, Interpreter, Program, Scratch};
 use iso_jit::Jit;
@@ -28,7 +27,7 @@ pub(crate) fn values_agree(jit: &Jit, program: &Program, points: &[[f64; 3]]) {
 
     let [x, y, z] = [0, 1, 2].map(|axis| points.iter().map(|point| point[axis]).collect::<Vec<_>>());
     let mut values = vec![0.0; outputs * points.len()];
-    jit.batch(program).unwrap().evaluate(&mut scratch, Points { x: &x, y: &y, z: &z }, &mut values);
+    jit.batch(program).unwrap().evaluate(&mut scratch, &[&x, &y, &z], &mut values);
     for (place, right) in expected.iter().enumerate() {
         let value: Vec<_> = (0..outputs).map(|output| values[output * points.len() + place]).collect();
         let point = points[place];

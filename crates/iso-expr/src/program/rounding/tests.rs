@@ -1,106 +1,20 @@
 use crate::engine::{Boxes, Enclosures};
+use crate::program::twofold::{ARITHMETIC, Twofold, exact};
 use crate::random::Random;
-use crate::{Axis, Decorated, Decoration, Engine, Interpreter, Interval, Node, Operation, Program, Scratch};
+use crate::{
+    Axis, BoxKernel, Decorated, Decoration, Engine, Interpreter, Interval, Operation, Program, Scratch,
+};
 
-/// A number held as the sum of two doubles (Dekker, A floating-point technique for extending the available precision,
-/// Numerische Mathematik 18, 1971): some 106 bits, next to which the rounding of doubles is coarse.
-#[derive(Clone, Copy)]
-struct Twofold(f64, f64);
-
-impl Twofold {
-    /// The exact sum of two doubles.
-    fn of_sum(a: f64, b: f64) -> Self {
-        let sum = a + b;
-        let of_b = sum - a;
-        Self(sum, (a - (sum - of_b)) + (b - of_b))
-    }
-
-    fn plus(self, other: Self) -> Self {
-        let Self(sum, rest) = Self::of_sum(self.0, other.0);
-        let Self(low, least) = Self::of_sum(self.1, other.1);
-        let Self(sum, rest) = Self::of_sum(sum, rest + low);
-        Self::of_sum(sum, rest + least)
-    }
-
-    fn negated(self) -> Self {
-        Self(-self.0, -self.1)
-    }
-
-    fn times(self, other: Self) -> Self {
-        let product = self.0 * other.0;
-        let rest = self.0.mul_add(other.0, -product) + (self.0 * other.1 + self.1 * other.0);
-        Self::of_sum(product, rest)
-    }
-
-    fn over(self, other: Self) -> Self {
-        let mut quotient = Self(self.0 / other.0, 0.0);
-        for _ in 0..2 {
-            let rest = self.plus(quotient.times(other).negated());
-            quotient = quotient.plus(Self(rest.0 / other.0, 0.0));
-        }
-        quotient
-    }
-
-    fn root(self) -> Self {
-        let root = Self(self.0.sqrt(), 0.0);
-        if root.0 == 0.0 { root } else { root.plus(self.over(root)).times(Self(0.5, 0.0)) }
-    }
-
-    fn is_below(self, other: Self) -> bool {
-        self.0 < other.0 || self.0 == other.0 && self.1 < other.1
-    }
-}
-
-const ARITHMETIC: [Operation; 10] = [
-    Operation::Add,
-    Operation::Subtract,
-    Operation::Multiply,
-    Operation::Divide,
-    Operation::SquareRoot,
-    Operation::IntegerPower,
-    Operation::Negate,
-    Operation::Absolute,
-    Operation::Minimum,
-    Operation::Maximum,
-];
-
-/// The program's output at `point`, nearly exactly.
-fn exact(program: &Program, point: [f64; 3]) -> Twofold {
-    let mut values: Vec<Twofold> = Vec::new();
-    for node in program.nodes() {
-        let value = match node {
-            Node::Variable(axis) => Twofold(point[*axis as usize], 0.0),
-            Node::Constant(constant) => Twofold(constant.value(), 0.0),
-            Node::Apply(operation, operands) => {
-                let [a, b, _] = operands.map(|operand| values[operand.index()]);
-                match operation {
-                    Operation::Add => a.plus(b),
-                    Operation::Subtract => a.plus(b.negated()),
-                    Operation::Multiply => a.times(b),
-                    Operation::Divide => a.over(b),
-                    Operation::SquareRoot => a.root(),
-                    Operation::IntegerPower => (1..b.0 as u32).fold(a, |power, _| power.times(a)),
-                    Operation::Negate => a.negated(),
-                    Operation::Absolute if a.0 < 0.0 => a.negated(),
-                    Operation::Absolute => a,
-                    Operation::Minimum if a.is_below(b) => a,
-                    Operation::Maximum if b.is_below(a) => a,
-                    Operation::Minimum | Operation::Maximum => b,
-                    _ => unreachable!("only arithmetic is drawn"),
-                }
-            }
-        };
-        values.push(value);
-    }
-    values[program.outputs()[0].index()]
-}
-
-fn enclose(program: &Program, sides: [Interval; 3]) -> Vec<Decorated> {
+/// What a kernel of so many outputs says over a box.
+pub(in crate::program) fn enclose(
+    kernel: &dyn BoxKernel,
+    count: usize,
+    sides: [Interval; 3],
+) -> Vec<Decorated> {
     let (lo, hi) = (sides.map(|side| [side.lo]), sides.map(|side| [side.hi]));
-    let count = program.outputs().len();
     let (mut low, mut high, mut decoration) =
         (vec![0.0; count], vec![0.0; count], vec![Decoration::Trivial; count]);
-    Interpreter.boxes(program).unwrap().evaluate(
+    kernel.evaluate(
         &mut Scratch::default(),
         Boxes { lo: lo.each_ref().map(|end| &end[..]), hi: hi.each_ref().map(|end| &end[..]) },
         Enclosures { lo: &mut low, hi: &mut high, decoration: &mut decoration },
@@ -114,7 +28,8 @@ fn enclose(program: &Program, sides: [Interval; 3]) -> Vec<Decorated> {
 
 /// The bound over a box; `None` where there is none.
 fn bound(program: &Program, sides: [Interval; 3]) -> Option<f64> {
-    let outputs = enclose(&program.with_rounding(), sides);
+    let kernel = Interpreter.boxes(&program.with_rounding()).unwrap();
+    let outputs = enclose(&*kernel, 5, sides);
     let is_known = outputs[0].decoration == Decoration::Common
         && outputs.iter().all(|output| output.decoration >= Decoration::Defined);
     let bound = outputs[1].interval.hi * Program::ROUNDING_UNIT * (1.0 + 1e-12);

@@ -1,0 +1,137 @@
+//! Sums, products and quotients of forms.
+
+use super::{Builder, Form, NodeId, Operation, TINY};
+
+impl Builder {
+    pub(super) fn sum(&mut self, x: Form, y: Form) -> Form {
+        let middle = self.of(Operation::Add, x.middle, y.middle);
+        let slopes = [0, 1, 2].map(|place| self.plus(x.slopes[place], y.slopes[place]));
+        self.combined(middle, slopes, x, y)
+    }
+
+    pub(super) fn difference(&mut self, x: Form, y: Form) -> Form {
+        let middle = self.of(Operation::Subtract, x.middle, y.middle);
+        let slopes = [0, 1, 2].map(|place| match (x.slopes[place], y.slopes[place]) {
+            (Some(x), Some(y)) => Some(self.of(Operation::Subtract, x, y)),
+            (x, y) => x.or_else(|| y.map(|y| self.negated(y))),
+        });
+        self.combined(middle, slopes, x, y)
+    }
+
+    /// A sum or difference with this middle and these slopes.
+    fn combined(&mut self, middle: NodeId, slopes: [Option<NodeId>; 3], x: Form, y: Form) -> Form {
+        let size = self.of(Operation::Add, x.size, y.size);
+        let rest = self.plus(x.rest, y.rest);
+        Form { middle, slopes, rest: self.rounded(rest, size), size }
+    }
+
+    pub(super) fn negative(&mut self, x: Form) -> Form {
+        let middle = self.negated(x.middle);
+        Form { middle, slopes: x.slopes.map(|slope| slope.map(|slope| self.negated(slope))), ..x }
+    }
+
+    /// (m + Δ)·(n + Δ′) = m·n + n·Δ + m·Δ′ + Δ·Δ′.
+    pub(super) fn product(&mut self, x: Form, y: Form) -> Form {
+        let middle = self.times(x.middle, y.middle);
+        let slopes = [0, 1, 2].map(|place| {
+            let of_y = y.slopes[place].map(|slope| self.times(x.middle, slope));
+            let of_x = x.slopes[place].map(|slope| self.times(y.middle, slope));
+            self.plus(of_y, of_x)
+        });
+        let [x_middle, y_middle] = [x.middle, y.middle].map(|middle| self.magnitude_of(middle));
+        let of_y = y.rest.map(|rest| self.times(x_middle, rest));
+        let of_x = x.rest.map(|rest| self.times(y_middle, rest));
+        let of_both = match (self.deviation(x), self.deviation(y)) {
+            (Some(x), Some(y)) => Some(self.times(x, y)),
+            _ => None,
+        };
+        let rest = self.plus(of_y, of_x);
+        let rest = self.plus(rest, of_both);
+        let size = self.times(x.size, y.size);
+        let size = self.larger(size);
+        Form { middle, slopes, rest: self.rounded(rest, size), size }
+    }
+
+    /// (m + Δ)² = m² + 2m·Δ + Δ², where 0 ≤ Δ² ≤ r² for the deviation r.
+    pub(super) fn square(&mut self, x: Form) -> Form {
+        let mut middle = self.times(x.middle, x.middle);
+        let double = self.scaled(2.0, x.middle);
+        let slopes = x.slopes.map(|slope| slope.map(|slope| self.times(double, slope)));
+        let magnitude = self.magnitude_of(double);
+        let mut rest = x.rest.map(|rest| self.times(magnitude, rest));
+        if let Some(deviation) = self.deviation(x) {
+            let half = self.scaled(0.5, deviation);
+            let half = self.times(half, deviation);
+            middle = self.of(Operation::Add, middle, half);
+            rest = self.plus(rest, Some(half));
+        }
+        let size = self.times(x.size, x.size);
+        let size = self.larger(size);
+        Form { middle, slopes, rest: self.rounded(rest, size), size }
+    }
+
+    /// An integer power from 2 on, by squares of the base.
+    pub(super) fn power(&mut self, base: Form, exponent: u32) -> Form {
+        let (mut remaining, mut square) = (exponent, base);
+        let mut product: Option<Form> = None;
+        loop {
+            if remaining & 1 == 1 {
+                product = Some(product.map_or(square, |product| self.product(product, square)));
+            }
+            remaining >>= 1;
+            match product {
+                Some(product) if remaining == 0 => return product,
+                _ => square = self.square(square),
+            }
+        }
+    }
+
+    pub(super) fn quotient(&mut self, x: Form, y: Form) -> Form {
+        let reciprocal = self.reciprocal(y);
+        let is_one = x.rest.is_none() && x.middle == self.0.literal(1.0);
+        if is_one { reciprocal } else { self.product(x, reciprocal) }
+    }
+
+    /// 1/(m + Δ) = 1/m − Δ/m² + Δ²/(m²·(m + Δ)), whose last term has the sign of m and is at most r²/(m²·(|m| − r)) for the
+    /// deviation r.
+    fn reciprocal(&mut self, x: Form) -> Form {
+        let one = self.0.literal(1.0);
+        let inverse = self.of(Operation::Divide, one, x.middle);
+        let magnitude = self.magnitude_of(inverse);
+        let Some(deviation) = self.deviation(x) else {
+            let size = self.larger(magnitude);
+            return Form { middle: inverse, slopes: [None; 3], rest: self.rounded(None, size), size };
+        };
+        let distance = self.distance(x.middle, deviation);
+        let stays_away = self.is_positive(distance);
+        let distance = self.provided(stays_away, distance);
+        let part = self.times(deviation, magnitude);
+        let half = self.times(part, part);
+        let half = self.scaled(0.5, half);
+        let half = self.of(Operation::Divide, half, distance);
+        let sign = self.times(x.middle, magnitude);
+        let shift = self.times(sign, half);
+        let middle = self.of(Operation::Add, inverse, shift);
+        let slopes = x.slopes.map(|slope| {
+            slope.map(|slope| {
+                let part = self.times(slope, inverse);
+                let part = self.times(part, inverse);
+                self.negated(part)
+            })
+        });
+        let rest = x.rest.map(|rest| {
+            let part = self.times(rest, magnitude);
+            self.times(part, magnitude)
+        });
+        let rest = self.plus(rest, Some(half));
+        let size = self.of(Operation::Divide, one, distance);
+        let size = self.larger(size);
+        Form { middle, slopes, rest: self.rounded(rest, size), size }
+    }
+
+    /// A size that underflow does not reach.
+    pub(super) fn larger(&mut self, size: NodeId) -> NodeId {
+        let tiny = self.0.literal(TINY);
+        self.of(Operation::Add, size, tiny)
+    }
+}

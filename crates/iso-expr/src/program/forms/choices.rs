@@ -1,0 +1,126 @@
+//! Forms of functions that choose: of minima, absolute values and what their derivatives are made of.
+//!
+//! Where a choice is certain the form is the one chosen. Where it is not, it holds all that may be chosen.
+
+use super::{Builder, Form, NodeId, Operation};
+
+/// What is known of the sign of a form.
+struct Signed {
+    /// 1 where it is certain, else 0.
+    is_certain: NodeId,
+    /// −1, 0 or 1, where it is certain.
+    sign: NodeId,
+    /// What the numbers do not exceed.
+    magnitude: NodeId,
+}
+
+impl Builder {
+    pub(super) fn absolute(&mut self, x: Form) -> Form {
+        let Signed { is_certain, sign, magnitude } = self.signed(x);
+        let (zero, half) = (self.0.literal(0.0), self.scaled(0.5, magnitude));
+        let known = self.magnitude_of(x.middle);
+        let middle = self.either(is_certain, known, half);
+        let slopes = x.slopes.map(|slope| {
+            slope.map(|slope| {
+                let turned = self.times(sign, slope);
+                self.either(is_certain, turned, zero)
+            })
+        });
+        let rest = self.either(is_certain, x.rest.unwrap_or(zero), half);
+        Form { middle, slopes, rest: self.rounded(Some(rest), x.size), size: x.size }
+    }
+
+    /// The maximum for `toward` addition, the minimum for subtraction: ½(x + y) ± ½|x − y|.
+    pub(super) fn extremum(&mut self, x: Form, y: Form, toward: Operation) -> Form {
+        let difference = self.difference(x, y);
+        let Signed { is_certain, sign, magnitude } = self.signed(difference);
+        let half = self.scaled(0.5, sign);
+        let middle = self.0.literal(0.5);
+        let chosen = self.of(toward, middle, half);
+        let weight = self.either(is_certain, chosen, middle);
+        let mixed = self.mixture(weight, x, y);
+        let quarter = self.scaled(0.25, magnitude);
+        let zero = self.0.literal(0.0);
+        let off = self.either(is_certain, zero, quarter);
+        let middle = self.of(toward, mixed.middle, off);
+        let rest = self.plus(mixed.rest, Some(off));
+        Form { middle, rest: self.rounded(rest, mixed.size), ..mixed }
+    }
+
+    pub(super) fn sign(&mut self, x: Form) -> Form {
+        let Signed { is_certain, sign, .. } = self.signed(x);
+        let [zero, one] = [0.0, 1.0].map(|value| self.0.literal(value));
+        let middle = self.either(is_certain, sign, zero);
+        let rest = self.either(is_certain, zero, one);
+        Form { middle, slopes: [None; 3], rest: Some(rest), size: one }
+    }
+
+    /// 1 where x < y, 0 where x > y.
+    pub(super) fn order(&mut self, x: Form, y: Form) -> Form {
+        let difference = self.difference(y, x);
+        let Signed { is_certain, sign, .. } = self.signed(difference);
+        let half = self.0.literal(0.5);
+        let truth = self.scaled(0.5, sign);
+        let truth = self.of(Operation::Add, half, truth);
+        self.truth(is_certain, truth)
+    }
+
+    /// 0 where x and y differ.
+    pub(super) fn equality(&mut self, x: Form, y: Form) -> Form {
+        let difference = self.difference(x, y);
+        let Signed { is_certain, .. } = self.signed(difference);
+        let zero = self.0.literal(0.0);
+        self.truth(is_certain, zero)
+    }
+
+    /// `x` where `condition` is not zero, else `y`.
+    pub(super) fn choice(&mut self, condition: Form, x: Form, y: Form) -> Form {
+        let Signed { is_certain: is_true, magnitude, .. } = self.signed(condition);
+        let [zero, half, one] = [0.0, 0.5, 1.0].map(|value| self.0.literal(value));
+        let is_false = self.of(Operation::Equal, magnitude, zero);
+        let weight = self.either(is_false, zero, half);
+        let weight = self.either(is_true, one, weight);
+        let mixed = self.mixture(weight, x, y);
+        let difference = self.difference(x, y);
+        let magnitude = self.magnitude(difference);
+        let between = self.scaled(0.5, magnitude);
+        let is_known = self.of(Operation::Maximum, is_true, is_false);
+        let off = self.either(is_known, zero, between);
+        let rest = self.plus(mixed.rest, Some(off));
+        Form { rest: self.rounded(rest, mixed.size), ..mixed }
+    }
+
+    /// A truth value that is known where it is certain.
+    fn truth(&mut self, is_certain: NodeId, truth: NodeId) -> Form {
+        let [zero, half, one] = [0.0, 0.5, 1.0].map(|value| self.0.literal(value));
+        let middle = self.either(is_certain, truth, half);
+        let rest = self.either(is_certain, zero, half);
+        Form { middle, slopes: [None; 3], rest: Some(rest), size: one }
+    }
+
+    /// weight·x + (1 − weight)·y, for a weight of 0, ½ or 1.
+    fn mixture(&mut self, weight: NodeId, x: Form, y: Form) -> Form {
+        let one = self.0.literal(1.0);
+        let other = self.of(Operation::Subtract, one, weight);
+        let mut mixed = |x: Option<NodeId>, y: Option<NodeId>| {
+            let x = x.map(|x| self.times(weight, x));
+            let y = y.map(|y| self.times(other, y));
+            self.plus(x, y)
+        };
+        let middle = mixed(Some(x.middle), Some(y.middle)).expect("both are there");
+        let slopes = [0, 1, 2].map(|place| mixed(x.slopes[place], y.slopes[place]));
+        let rest = mixed(x.rest, y.rest);
+        Form { middle, slopes, rest, size: self.of(Operation::Add, x.size, y.size) }
+    }
+
+    fn signed(&mut self, x: Form) -> Signed {
+        let zero = self.0.literal(0.0);
+        let deviation = self.deviation(x).unwrap_or(zero);
+        let distance = self.distance(x.middle, deviation);
+        Signed {
+            is_certain: self.is_positive(distance),
+            sign: self.0.apply(Operation::Sign, &[x.middle]),
+            magnitude: self.magnitude(x),
+        }
+    }
+}

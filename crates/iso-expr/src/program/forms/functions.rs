@@ -1,0 +1,103 @@
+//! Elementary functions of forms, by Taylor's theorem around the middle. Here r is the form's deviation.
+
+use super::{Builder, Form, NodeId, Operation};
+
+/// eᵣ − 1 is at most 1.72·r for r ≤ 1, as it is convex.
+const STEEPEST: f64 = 1.75;
+
+impl Builder {
+    /// √(m + Δ) = √m + Δ/(2√m) − (√(m + Δ) − √m)²/(2√m), where |√(m + Δ) − √m| ≤ r/(√m + √(m − r)).
+    pub(super) fn square_root(&mut self, x: Form) -> Form {
+        let root = self.0.apply(Operation::SquareRoot, &[x.middle]);
+        let Some(deviation) = self.deviation(x) else { return self.known(root) };
+        let distance = self.distance(x.middle, deviation);
+        let least = self.0.apply(Operation::SquareRoot, &[distance]);
+        let half = self.0.literal(0.5);
+        let slope = self.of(Operation::Divide, half, root);
+        let sum = self.of(Operation::Add, root, least);
+        let change = self.of(Operation::Divide, deviation, sum);
+        let bend = self.times(change, slope);
+        let bend = self.times(bend, change);
+        let half = self.scaled(0.5, bend);
+        let middle = self.of(Operation::Subtract, root, half);
+        let part = self.of(Operation::Divide, deviation, root);
+        let size = self.of(Operation::Add, root, part);
+        let size = self.larger(size);
+        self.bent((middle, size), x, (slope, slope), half)
+    }
+
+    /// e^(m + Δ) = e^m·(1 + Δ + q), where 0 ≤ q ≤ ½r²·eʳ. Nothing is said for r > 1.
+    pub(super) fn exponential(&mut self, x: Form) -> Form {
+        let value = self.0.apply(Operation::Exp, &[x.middle]);
+        let Some(deviation) = self.deviation(x) else { return self.known(value) };
+        let one = self.0.literal(1.0);
+        let is_small = self.of(Operation::Less, deviation, one);
+        let steepest = self.scaled(STEEPEST, deviation);
+        let steepest = self.of(Operation::Add, one, steepest);
+        let quarter = self.scaled(0.25, deviation);
+        let square = self.times(quarter, deviation);
+        let half = self.times(square, steepest);
+        let half = self.times(value, half);
+        let half = self.provided(is_small, half);
+        let middle = self.of(Operation::Add, value, half);
+        let part = self.times(value, deviation);
+        let size = self.of(Operation::Add, middle, part);
+        let size = self.of(Operation::Add, size, half);
+        let size = self.larger(size);
+        self.bent((middle, size), x, (value, value), half)
+    }
+
+    /// sin(m + Δ) = sin m + Δ·cos m − ½Δ²·sin m + q, where |q| ≤ r³/6.
+    pub(super) fn sine(&mut self, x: Form) -> Form {
+        let [sine, cosine] = [Operation::Sin, Operation::Cos].map(|wave| self.0.apply(wave, &[x.middle]));
+        self.wave(x, sine, cosine)
+    }
+
+    /// cos(m + Δ) = cos m − Δ·sin m − ½Δ²·cos m + q, where |q| ≤ r³/6.
+    pub(super) fn cosine(&mut self, x: Form) -> Form {
+        let [sine, cosine] = [Operation::Sin, Operation::Cos].map(|wave| self.0.apply(wave, &[x.middle]));
+        let slope = self.negated(sine);
+        self.wave(x, cosine, slope)
+    }
+
+    /// A sine or cosine with this value and slope in the middle.
+    fn wave(&mut self, x: Form, value: NodeId, slope: NodeId) -> Form {
+        let Some(deviation) = self.deviation(x) else { return self.known(value) };
+        let square = self.times(deviation, deviation);
+        let quarter = self.scaled(0.25, square);
+        let shift = self.times(quarter, value);
+        let middle = self.of(Operation::Subtract, value, shift);
+        let cube = self.times(deviation, square);
+        let sixth = self.scaled(1.0 / 6.0, cube);
+        let half = self.magnitude_of(shift);
+        let half = self.of(Operation::Add, half, sixth);
+        let one = self.0.literal(1.0);
+        let size = self.of(Operation::Add, one, deviation);
+        let size = self.of(Operation::Add, size, square);
+        let size = self.of(Operation::Add, size, cube);
+        let magnitude = self.magnitude_of(slope);
+        self.bent((middle, size), x, (slope, magnitude), half)
+    }
+
+    /// A function of `x` with this middle and size, and this slope, given with its magnitude; it is off by `half` beside what it is
+    /// for the rest of `x`.
+    fn bent(
+        &mut self,
+        (middle, size): (NodeId, NodeId),
+        x: Form,
+        (slope, magnitude): (NodeId, NodeId),
+        half: NodeId,
+    ) -> Form {
+        let slopes = x.slopes.map(|part| part.map(|part| self.times(slope, part)));
+        let rest = x.rest.map(|rest| self.times(magnitude, rest));
+        let rest = self.plus(rest, Some(half));
+        Form { middle, slopes, rest: self.rounded(rest, size), size }
+    }
+
+    /// The value of a function at one number.
+    fn known(&mut self, value: NodeId) -> Form {
+        let size = self.magnitude_of(value);
+        let size = self.larger(size);
+        Form { middle: value, slopes: [None; 3], rest: self.rounded(None, size), size }
+    }
+}

@@ -1,0 +1,176 @@
+use super::PARTS;
+use crate::program::twofold::{ARITHMETIC, Twofold, exact};
+use crate::random::Random;
+use crate::{Ast, Axis, Engine, Interpreter, Interval, Operation, Program, Scratch};
+
+/// Numbers of a form: middle, slopes and rest.
+type Form = [f64; PARTS];
+
+/// What has forms beside arithmetic, continuous or not.
+const OTHERS: [Operation; 8] = [
+    Operation::Exp,
+    Operation::Sin,
+    Operation::Cos,
+    Operation::Sign,
+    Operation::Less,
+    Operation::LessOrEqual,
+    Operation::Equal,
+    Operation::Select,
+];
+
+/// Forms of x, y and z around a point, so wide.
+fn arguments(random: &mut Random, width: f64) -> [Form; 3] {
+    [(); 3].map(|()| {
+        let mut part = |width: f64| width * random.between(-1.0, 1.0);
+        let (middle, slopes) = (part(3.0), [part(width), part(width), part(width)]);
+        // No less than what the coordinates of points are rounded by, if they are.
+        let rest = if width > 0.0 { part(0.1 * width).abs() + 1e-14 } else { 0.0 };
+        [middle, slopes[0], slopes[1], slopes[2], rest]
+    })
+}
+
+/// Three numbers from −1 to 1, often ends.
+fn symbols(random: &mut Random) -> [f64; 3] {
+    [(); 3].map(|()| match random.below(4) {
+        0 => -1.0,
+        1 => 1.0,
+        _ => random.between(-1.0, 1.0),
+    })
+}
+
+/// A number of a form, for these symbols.
+fn member(random: &mut Random, [middle, a, b, c, rest]: Form, symbols: [f64; 3]) -> f64 {
+    let off = 0.9 * rest * random.between(-1.0, 1.0);
+    middle + (a * symbols[0] + b * symbols[1] + c * symbols[2]) + off
+}
+
+/// The middle of the numbers of a form for these symbols, nearly exactly.
+fn line([middle, a, b, c, _]: Form, symbols: [f64; 3]) -> Twofold {
+    let term = |slope: f64, symbol: f64| Twofold(slope, 0.0).times(Twofold(symbol, 0.0));
+    let slopes = [a, b, c].into_iter().zip(symbols).map(|(slope, symbol)| term(slope, symbol));
+    slopes.fold(Twofold(middle, 0.0), Twofold::plus)
+}
+
+fn form_of(program: &Program, arguments: [Form; 3]) -> Form {
+    program.evaluate(arguments.concat()).try_into().expect("a form has five parts")
+}
+
+fn is_known(form: &Form) -> bool {
+    form.iter().all(|part| part.is_finite())
+}
+
+#[test]
+fn values_of_arithmetic_are_in_their_forms() {
+    let mut random = Random::new(11);
+    let mut compared = 0;
+    let mut tightest: f64 = 0.0;
+    for round in 0..6000 {
+        let program = random.program_of(1 + round % 20, &ARITHMETIC);
+        let forms = program.with_forms().expect("arithmetic has forms");
+        let width = [0.0, 1e-9, 1e-3, 0.1, 0.5][round % 5];
+        let arguments = arguments(&mut random, width);
+        let form = form_of(&forms, arguments);
+        if !is_known(&form) {
+            continue;
+        }
+        for _ in 0..20 {
+            let symbols = symbols(&mut random);
+            let point = arguments.map(|argument| member(&mut random, argument, symbols));
+            let exact = exact(&program, point);
+            assert!(!exact.0.is_nan() || form[4] > 1e200, "{point:?} of\n{program}");
+            let Twofold(off, _) = exact.plus(line(form, symbols).negated());
+            if off.is_nan() {
+                continue; // Products of doubles near the largest are too large for two.
+            }
+            assert!(off.abs() <= form[4], "off by {off}, not {}, at {symbols:?} of\n{program}", form[4]);
+            if width > 0.0 && form[4] < 1e-10 {
+                tightest = tightest.max(off.abs() / form[4]);
+            }
+            compared += 1;
+        }
+    }
+    assert!(compared > 50_000, "only {compared} values were compared");
+    assert!(tightest > 0.3, "forms use {tightest} of their rest");
+}
+
+#[test]
+fn values_of_all_operations_are_in_their_forms() {
+    let mut random = Random::new(12);
+    let operations = [&ARITHMETIC[..], &OTHERS].concat();
+    let mut compared = 0;
+    for round in 0..8000 {
+        let program = random.program_of(1 + round % 12, &operations);
+        let forms = program.with_forms().expect("all of these have forms");
+        let arguments = arguments(&mut random, [1e-9, 1e-3, 0.1, 0.5][round % 4]);
+        let form = form_of(&forms, arguments);
+        if !is_known(&form) {
+            continue;
+        }
+        let value = Interpreter.boxes(&program).unwrap();
+        for _ in 0..10 {
+            let symbols = symbols(&mut random);
+            let point = arguments.map(|argument| member(&mut random, argument, symbols));
+            let enclosure =
+                crate::program::rounding::tests::enclose(&*value, 1, point.map(Interval::point))[0];
+            let Interval { lo, hi } = enclosure.interval;
+            let Twofold(middle, _) = line(form, symbols);
+            let off = (lo - middle).max(middle - hi);
+            assert!(
+                off <= form[4],
+                "{lo} to {hi} is not {middle} ± {} at {symbols:?} of\n{program}",
+                form[4]
+            );
+            compared += 1;
+        }
+    }
+    assert!(compared > 20_000, "only {compared} values were compared");
+}
+
+#[test]
+fn gradients_of_what_has_branches_have_forms() {
+    for formula in ["max(x, y) - min(x, z)^2", "abs(x - y)*sqrt(1 + x^2)", "exp(-x^2) + sin(y)/cos(z)"] {
+        let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
+        assert!(program.has_forms());
+        let gradient = program.with_gradient().simplified();
+        assert_eq!(gradient.with_forms().unwrap().outputs().len(), 4 * PARTS);
+    }
+    for formula in ["floor(x)", "if(x < y, x, z)", "atan(x)"] {
+        let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
+        assert!(!program.has_forms(), "{formula}");
+    }
+}
+
+/// Over |x − 1| ≤ 0.1: x² = 1.005 + 0.2·e ± 0.005, and what values have in common cancels.
+#[test]
+fn forms_know_what_values_have_in_common() {
+    let form = |formula: &str| {
+        let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0);
+        let [x, y, z] = [[1.0, 0.1, 0.0, 0.0, 0.0], [2.0, 0.0, 0.1, 0.0, 0.0], [0.0; PARTS]];
+        form_of(&program.with_forms().unwrap(), [x, y, z])
+    };
+    let close = |found: Form, expected: Form| {
+        let off = found.iter().zip(expected).map(|(found, expected)| (found - expected).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-12, "{found:?} is not {expected:?}");
+    };
+    close(form("x*x"), [1.005, 0.2, 0.0, 0.0, 0.005]);
+    close(form("(x + y) - (x - y)"), [4.0, 0.0, 0.2, 0.0, 0.0]);
+    close(form("x*y - y*x"), [0.0, 0.0, 0.0, 0.0, 0.02]);
+    // 1/(1 + u) = 1 − u + u²/(1 + u), whose last term is from 0 to 0.01/0.9.
+    close(form("1/x"), [1.0 + 0.005 / 0.9, -0.1, 0.0, 0.0, 0.005 / 0.9]);
+    close(form("max(x, y)"), [2.0, 0.0, 0.1, 0.0, 0.0]);
+    assert!(form("1/(x - 1)")[4].is_nan() && form("sqrt(x - 1)")[4].is_nan());
+}
+
+#[test]
+fn engines_agree_on_forms() {
+    let mut random = Random::new(13);
+    let program = random.program_of(15, &ARITHMETIC).with_forms().unwrap();
+    let arguments = arguments(&mut random, 0.1).concat();
+    let slices: Vec<&[f64]> = arguments.chunks(1).collect();
+    let mut found = [0.0; PARTS];
+    Interpreter.batch(&program).unwrap().evaluate(&mut Scratch::default(), &slices, &mut found);
+    for (found, expected) in found.into_iter().zip(program.evaluate(&arguments)) {
+        crate::program::reference::assert_same(found, expected, || program.to_string());
+    }
+    assert_eq!(Axis::ALL.len() * PARTS, slices.len());
+}
