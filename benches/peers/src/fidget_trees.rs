@@ -4,7 +4,7 @@ use std::error::Error;
 
 use fidget::Context;
 use fidget::context::Node as FidgetNode;
-use iso_expr::{Axis, Node, Operation, Program};
+use iso_expr::{Node, Operation, Program};
 
 /// The same formula in fidget, operation by operation, its constants rounded to `f32`. fidget makes squares of products of
 /// a node with itself.

@@ -8,8 +8,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use glam::DVec3;
-use iso_expr::engine::Points;
-use iso_expr::{Axis, Engine, Interpreter, Node, NodeId, Operation, Program, Scratch};
+use iso_expr::{Engine, Interpreter, Node, NodeId, Operation, Program, Scratch};
 use tempfile::TempDir;
 
 use crate::depths::Depths;
@@ -173,7 +172,7 @@ fn steepness(program: &Program, view: &SquareView) -> Result<f64, Box<dyn Error>
     let mut steepest = 0.0_f64;
     for column in 0..SAMPLES * SAMPLES {
         let (x, y) = (coordinate(column % SAMPLES), coordinate(column / SAMPLES));
-        kernel.evaluate(&mut scratch, Points { x: &[x; SAMPLES], y: &[y; SAMPLES], z: &line }, &mut values);
+        kernel.evaluate(&mut scratch, &[&[x; SAMPLES], &[y; SAMPLES], &line], &mut values);
         for place in 0..SAMPLES {
             let [value, dx, dy, dz] = [0, 1, 2, 3].map(|output| values[output * SAMPLES + place]);
             let slope = DVec3::new(dx, dy, dz).length();

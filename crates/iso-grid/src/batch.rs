@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use iso_expr::engine::{Boxes, Enclosures};
-use iso_expr::{BatchKernel, BoxKernel, Decorated, Decoration, Interval, Scratch};
+use iso_expr::{BatchKernel, BoxKernel, Decorated, Decoration, Interval, Program, Scratch};
 
 use crate::Ray;
 use crate::lanes::{ROW, Row};
@@ -71,6 +71,62 @@ impl PointBatch {
             kernel.evaluate(scratch, &[&self.x, &self.y, &self.z], &mut self.values);
         }
         &self.values
+    }
+}
+
+/// How many arguments forms of a program take.
+const ARGUMENTS: usize = 3 * Program::FORM;
+
+/// An affine form: the numbers middle + ∑ slopeᵢ·eᵢ + r for the same eᵢ from −1 to 1, and |r| ≤ rest. Nothing is known where a part is
+/// not finite.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Affine {
+    pub(crate) middle: f64,
+    pub(crate) slopes: DVec3,
+    pub(crate) rest: f64,
+}
+
+/// Sets of points, each by the affine forms of x, y and z, and what a kernel says of F and its gradient there.
+#[derive(Debug, Default)]
+pub(crate) struct FormBatch {
+    arguments: [Vec<f64>; ARGUMENTS],
+    found: Vec<f64>,
+}
+
+impl FormBatch {
+    pub(crate) fn clear(&mut self) {
+        self.arguments.iter_mut().for_each(Vec::clear);
+    }
+
+    pub(crate) fn push(&mut self, forms: [Affine; 3]) {
+        for (form, arguments) in forms.into_iter().zip(self.arguments.as_chunks_mut().0) {
+            let [middle, a, b, c, rest]: &mut [Vec<f64>; Program::FORM] = arguments;
+            middle.push(form.middle);
+            a.push(form.slopes.x);
+            b.push(form.slopes.y);
+            c.push(form.slopes.z);
+            rest.push(form.rest);
+        }
+    }
+
+    fn len(&self) -> usize {
+        self.arguments[0].len()
+    }
+
+    /// Finds the forms of all `outputs` of the kernel.
+    pub(crate) fn evaluate(&mut self, kernel: &dyn BatchKernel, scratch: &mut Scratch, outputs: usize) {
+        self.found.resize(Program::FORM * outputs * self.len(), f64::NAN);
+        if self.len() > 0 {
+            kernel.evaluate(scratch, &self.arguments.each_ref().map(Vec::as_slice), &mut self.found);
+        }
+    }
+
+    /// The form of an output on a set of points; `None` where nothing is known.
+    pub(crate) fn form(&self, output: usize, number: usize) -> Option<Affine> {
+        let part = |part: usize| self.found[(Program::FORM * output + part) * self.len() + number];
+        let [middle, a, b, c, rest] = [0, 1, 2, 3, 4].map(part);
+        let form = Affine { middle, slopes: DVec3::new(a, b, c), rest };
+        (middle.is_finite() && form.slopes.is_finite() && rest.is_finite()).then_some(form)
     }
 }
 

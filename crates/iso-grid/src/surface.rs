@@ -29,12 +29,14 @@ pub struct Surface {
     value_and_gradient: OnceLock<Program>,
     value_and_rounding: OnceLock<Program>,
     value_and_hessian: OnceLock<Program>,
+    forms: OnceLock<Program>,
     value_batch: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
     gradient_batch: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
     value_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     gradient_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     rounding_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     hessian_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
+    form_batch: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
     hessians_for_few_runs: OnceLock<Arc<dyn BoxKernel>>,
     /// Shared by copies.
     cells: Arc<Mutex<Option<CellsOfRegion>>>,
@@ -59,6 +61,8 @@ pub enum Kernel {
     RoundingBounds,
     /// F − C with its first and second derivatives over boxes: [`Surface::hessian_enclosures`].
     HessianEnclosures,
+    /// The affine forms of F − C and its gradient: [`Surface::forms`].
+    Forms,
 }
 
 impl Kernel {
@@ -66,20 +70,28 @@ impl Kernel {
     pub const OF_PROOFS: &'static [Self] =
         &[Self::Values, Self::ValueEnclosures, Self::GradientEnclosures, Self::RoundingBounds];
 
+    /// Formulas of more operations have no forms, which take some twenty times as many.
+    pub(crate) const WITH_FORMS: usize = 100;
+
     /// All kernels.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Values,
         Self::Gradients,
         Self::ValueEnclosures,
         Self::GradientEnclosures,
         Self::RoundingBounds,
         Self::HessianEnclosures,
+        Self::Forms,
     ];
 
-    /// Whether a kernel is likely to pay for itself: large formulas are not differentiated twice, for that may take nine times
-    /// as many operations.
+    /// Whether there is such a kernel and it is likely to pay for itself: large formulas are not differentiated twice, for that
+    /// may take nine times as many operations, and have no forms, nor have those that jump.
     pub fn pays(self, value: &Program) -> bool {
-        self != Self::HessianEnclosures || value.operations() <= DIFFERENTIATED_TWICE
+        match self {
+            Self::HessianEnclosures => value.operations() <= DIFFERENTIATED_TWICE,
+            Self::Forms => value.operations() <= Self::WITH_FORMS && value.has_forms(),
+            _ => true,
+        }
     }
 
     /// Whether it is compiled ahead of its use. What is asked for seldom is made for few runs until it was asked for often.
@@ -96,6 +108,7 @@ impl Kernel {
             Self::GradientEnclosures => "gradient enclosures",
             Self::RoundingBounds => "rounding bounds",
             Self::HessianEnclosures => "hessian enclosures",
+            Self::Forms => "forms",
         }
     }
 }
@@ -115,12 +128,14 @@ impl Surface {
             value_and_gradient: OnceLock::new(),
             value_and_rounding: OnceLock::new(),
             value_and_hessian: OnceLock::new(),
+            forms: OnceLock::new(),
             value_batch: OnceLock::new(),
             gradient_batch: OnceLock::new(),
             value_boxes: OnceLock::new(),
             gradient_boxes: OnceLock::new(),
             rounding_boxes: OnceLock::new(),
             hessian_boxes: OnceLock::new(),
+            form_batch: OnceLock::new(),
             hessians_for_few_runs: OnceLock::new(),
             cells: Arc::default(),
             stop: Stop::default(),
@@ -173,6 +188,7 @@ impl Surface {
             value_and_gradient: self.value_and_gradient.clone(),
             value_and_rounding: self.value_and_rounding.clone(),
             value_and_hessian: self.value_and_hessian.clone(),
+            forms: self.forms.clone(),
             ..surface
         }
     }
@@ -183,6 +199,9 @@ impl Surface {
     }
 
     /// The program that a kernel is compiled from: F − C, in some with its three derivatives and more.
+    ///
+    /// # Panics
+    /// When forms are asked for and there are [none](Program::has_forms).
     pub fn program_of(&self, kernel: Kernel) -> &Program {
         match kernel {
             Kernel::Values | Kernel::ValueEnclosures => &self.value,
@@ -195,6 +214,10 @@ impl Surface {
             Kernel::HessianEnclosures => self
                 .value_and_hessian
                 .get_or_init(|| self.derived(kernel, || self.value.with_hessian().simplified())),
+            Kernel::Forms => self.forms.get_or_init(|| {
+                let forms = self.program_of(Kernel::Gradients).with_forms();
+                forms.expect("derivatives of what has forms have forms")
+            }),
         }
     }
 
@@ -253,6 +276,7 @@ impl Surface {
             Kernel::GradientEnclosures => self.gradient_enclosures().map(drop),
             Kernel::RoundingBounds => self.rounding_bounds().map(drop),
             Kernel::HessianEnclosures => self.hessian_enclosures().map(drop),
+            Kernel::Forms => self.forms().map(drop),
         }
     }
 
@@ -265,6 +289,7 @@ impl Surface {
             Kernel::GradientEnclosures => matches!(self.gradient_boxes.get(), Some(Ok(_))),
             Kernel::RoundingBounds => matches!(self.rounding_boxes.get(), Some(Ok(_))),
             Kernel::HessianEnclosures => matches!(self.hessian_boxes.get(), Some(Ok(_))),
+            Kernel::Forms => matches!(self.form_batch.get(), Some(Ok(_))),
         }
     }
 
@@ -290,6 +315,17 @@ impl Surface {
     /// When the engine cannot compile it.
     pub fn hessian_enclosures(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
         compiled(&self.hessian_boxes, || self.engine.boxes(self.program_of(Kernel::HessianEnclosures)))
+    }
+
+    /// The [affine forms](Program::with_forms) of F − C and its three derivatives.
+    ///
+    /// # Errors
+    /// When the engine cannot compile it.
+    ///
+    /// # Panics
+    /// When there are [none](Program::has_forms).
+    pub fn forms(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
+        compiled(&self.form_batch, || self.engine.batch(self.program_of(Kernel::Forms)))
     }
 }
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 use iso_expr::{BatchKernel, Scratch};
 use pulp::Arch;
 
-use crate::batch::{BoxBatch, PointBatch};
+use crate::batch::{BoxBatch, FormBatch, PointBatch};
 use crate::certified::{Ahead, Entry, Expansion, Memory};
 use crate::{Counters, Ray, Span, Tile};
 
@@ -79,6 +79,7 @@ pub struct Workspace {
     pub(crate) boxes: BoxBatch,
     /// Points in the middle of some of those boxes, as boxes of their own.
     pub(crate) middles: BoxBatch,
+    pub(crate) forms: FormBatch,
     /// What lies ahead of a certified search.
     pub(crate) ahead: Vec<Ahead>,
     /// Which cells a certified search is to enter.

@@ -31,7 +31,7 @@ pub struct Plan {
     layers: Layers,
     arguments: [Decision<Axis>; 3],
     constants: [Decision<Given>; 4],
-    kernels: [Decision<Kernel>; 6],
+    kernels: [Decision<Kernel>; 7],
     passes: [Decision<Pass>; 6],
     buffers: [Decision<Buffer>; 6],
 }
@@ -291,6 +291,13 @@ impl Wanted<'_> {
                 "where F bends one way, rays that graze the surface are decided together; compiled when asked for often",
             ),
             Kernel::HessianEnclosures => (false, "the method samples"),
+            Kernel::Forms if certified && !kernel.pays(self.program) => {
+                (false, "F is too large or has jumps, or functions without forms")
+            }
+            Kernel::Forms if certified => {
+                (true, "slopes of F over beams are narrowed by what they have in common")
+            }
+            Kernel::Forms => (false, "the method samples"),
         }
     }
 

@@ -83,6 +83,7 @@ fn evaluation(formula: &Formula, samples: &[Vec<Measured>]) -> Result<Evaluation
 /// The kernels of a formula for which there is no native code.
 pub(super) fn interpreted(formula: &Formula) -> Result<Vec<&'static str>, Failure> {
     let surface = Surface::new(native_code()?, formula.program.clone());
-    let too_large = Kernel::ALL.into_iter().filter(|&kernel| surface.compile(kernel).is_err());
+    let wanted = Kernel::ALL.into_iter().filter(|kernel| kernel.pays(&formula.program));
+    let too_large = wanted.filter(|&kernel| surface.compile(kernel).is_err());
     Ok(too_large.map(Kernel::name).collect())
 }

@@ -57,8 +57,12 @@ pub(super) struct Formula {
     /// Before the kernel of its second derivatives is compiled, which is seldom asked for.
     patience_for_hessians: Patience,
     has_branches: bool,
+    /// Whether the formula that this is, or comes from, is small enough for forms.
+    may_have_forms: bool,
+    /// Whether its forms are asked for. That depends on the formula alone, so that all engines prove the same.
+    has_forms: bool,
     /// How many operations each kernel takes, counted when first asked for.
-    operations: [OnceLock<u64>; 6],
+    operations: [OnceLock<u64>; 7],
     /// Those of which it is the least or the greatest everywhere, found when first asked for; `None` when it is no such thing.
     faces: OnceLock<Option<(Extreme, Vec<Arc<Formula>>)>>,
 }
@@ -121,9 +125,11 @@ impl Patience {
 }
 
 impl Formula {
-    fn new(surface: Surface, patience: Patience) -> Self {
+    fn new(surface: Surface, patience: Patience, may_have_forms: bool) -> Self {
         let has_branches = surface.program().has_branches();
         Self {
+            may_have_forms,
+            has_forms: may_have_forms && Kernel::Forms.pays(surface.program()),
             patience_for_hessians: Patience::limited(surface.program()),
             surface: Arc::new(surface),
             compiled: OnceLock::new(),
@@ -143,7 +149,8 @@ impl Formula {
     fn wear(&self, kernel: Kernel, operations: u64) {
         if self.patience.wear(operations) {
             let surface = self.surface.compiled_for_many_runs();
-            if Kernel::OF_PROOFS.iter().all(|kernel| surface.compile(*kernel).is_ok()) {
+            let mut kernels = Kernel::OF_PROOFS.iter().chain(self.has_forms.then_some(&Kernel::Forms));
+            if kernels.all(|kernel| surface.compile(*kernel).is_ok()) {
                 self.compiled.get_or_init(|| Arc::new(surface));
                 self.compile_hessians();
             }
@@ -180,8 +187,11 @@ impl Kernels {
     /// # Errors
     /// When the engine cannot compile one.
     pub(super) fn of(surface: &Surface) -> Result<Self, CompileError> {
-        Kernel::OF_PROOFS.iter().try_for_each(|kernel| surface.compile(*kernel))?;
-        let formula = Arc::new(Formula::new(surface.clone(), Patience::endless()));
+        let has_forms = Kernel::Forms.pays(surface.program());
+        let mut kernels = Kernel::OF_PROOFS.iter().chain(has_forms.then_some(&Kernel::Forms));
+        kernels.try_for_each(|kernel| surface.compile(*kernel))?;
+        let may_have_forms = surface.program().operations() <= Kernel::WITH_FORMS;
+        let formula = Arc::new(Formula::new(surface.clone(), Patience::endless(), may_have_forms));
         Ok(Self { formula, domain: [Interval::ENTIRE; 3] })
     }
 
@@ -189,7 +199,8 @@ impl Kernels {
     /// runs, for compiling takes longer than they run.
     pub(super) fn shortened(&self, domain: Bounds) -> Option<Self> {
         let surface = self.formula.surface.shortened(domain)?;
-        Some(Self { formula: Arc::new(Formula::new(surface, Patience::endless())), domain })
+        let formula = Formula::new(surface, Patience::endless(), self.formula.may_have_forms);
+        Some(Self { formula: Arc::new(formula), domain })
     }
 
     /// The same for what a small formula comes to: in many places it is one of `formulas`, or becomes one, and is compiled when it
@@ -204,7 +215,10 @@ impl Kernels {
     pub(super) fn faces(&self, formulas: Option<&Formulas>) -> Option<(Extreme, Vec<Self>)> {
         let face = |program| match formulas {
             Some(formulas) => self.one_of(formulas, program),
-            None => Arc::new(Formula::new(self.formula.surface.reduced_to(program), Patience::endless())),
+            None => {
+                let surface = self.formula.surface.reduced_to(program);
+                Arc::new(Formula::new(surface, Patience::endless(), self.formula.may_have_forms))
+            }
         };
         let faces = self.formula.faces.get_or_init(|| {
             let (extreme, programs) = self.program().extreme_of()?;
@@ -219,7 +233,7 @@ impl Kernels {
     fn one_of(&self, formulas: &Formulas, program: Program) -> Arc<Formula> {
         formulas.one_of(program, |program| {
             let patience = Patience::limited(&program);
-            Formula::new(self.formula.surface.reduced_to(program), patience)
+            Formula::new(self.formula.surface.reduced_to(program), patience, self.formula.may_have_forms)
         })
     }
 
@@ -280,12 +294,17 @@ impl Kernels {
     /// One of the kernels over boxes; `None` for the others, and where it does not pay.
     pub(super) fn over_boxes(&self, kernel: Kernel) -> Option<&dyn BoxKernel> {
         match kernel {
-            Kernel::Values | Kernel::Gradients => None,
+            Kernel::Values | Kernel::Gradients | Kernel::Forms => None,
             Kernel::ValueEnclosures => Some(self.values()),
             Kernel::GradientEnclosures => Some(self.gradients()),
             Kernel::RoundingBounds => Some(&**compiled(self.formula.surface().rounding_bounds())),
             Kernel::HessianEnclosures => self.hessians(),
         }
+    }
+
+    /// The affine forms of F and its gradient, where that pays.
+    pub(super) fn forms(&self) -> Option<&dyn BatchKernel> {
+        self.formula.has_forms.then(|| &**compiled(self.formula.surface().forms()))
     }
 
     /// F with its first and second derivatives over boxes, where that pays.

@@ -5,6 +5,7 @@ use iso_expr::Interval;
 
 use super::spread::Spread;
 use crate::area::Area;
+use crate::batch::Affine;
 use crate::{Region, Span, Tile};
 
 /// Components beyond this size are left to rays one by one: below it nothing here overflows.
@@ -52,6 +53,26 @@ impl Beam {
         let rounding = ROUNDINGS * (o.size + span.end * d.size) + DVec3::splat(f64::MIN_POSITIVE);
         let radius = o.radius + half * d.middle.abs() + span.end * d.radius + rounding;
         (middle - radius, middle + radius)
+    }
+
+    /// Affine forms of x, y and z at the points of all rays in a stretch, its ends not negative: how they depend on column, row and
+    /// t, counted from the middle in units that reach the ends. Gives the middle t and its unit as well.
+    pub(super) fn forms(&self, span: Span) -> ([Affine; 3], (f64, f64)) {
+        let Self { origins: o, directions: d, .. } = self;
+        let t = 0.5 * (span.start + span.end);
+        let unit = (1.0 + ROUNDINGS) * (span.end - t).max(t - span.start) + f64::MIN_POSITIVE;
+        let middle = o.middle + t * d.middle;
+        let [column, row] = self.across(t);
+        let slopes = [self.radii[0] * column, self.radii[1] * row, unit * d.middle];
+        // Of the product of t and a direction, what both add is left.
+        let rest = o.rest + span.end * d.rest + unit * d.radius;
+        let rest = rest + ROUNDINGS * (o.size + span.end * d.size) + DVec3::splat(f64::MIN_POSITIVE);
+        let form = |axis: usize| Affine {
+            middle: middle[axis],
+            slopes: DVec3::from_array(slopes.map(|slope| slope[axis])),
+            rest: rest[axis],
+        };
+        ([0, 1, 2].map(form), (t, unit))
     }
 
     /// A stretch, from 0 on, that holds the part of every ray in the region, and ends before it starts when all miss it.

@@ -6,6 +6,7 @@ use iso_expr::{Decorated, Decoration, Interval};
 
 use super::beam::Beam;
 use crate::Span;
+use crate::batch::Affine;
 
 /// A few roundings, relative to what is rounded: more than any sum here takes.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -93,16 +94,17 @@ impl Gradient {
 }
 
 /// F near a point of a beam: for the ray that is a columns and b rows off its middle, and for every t of the stretch,
-/// F = `value` + a·`by_column` + b·`by_row` + (t − `t`)·`slope` up to `rest`, for some numbers of these balls.
+/// F = `value` + a·`by_column` + b·`by_row` + (t − `t`)·`incline` up to `rest`, for some numbers of these balls; and F is continuous.
 ///
-/// This is the mean value theorem: F is continuous on a convex set that holds the points, and its generalised gradients
-/// there are enclosed (Neumaier, Interval Methods for Systems of Equations, 1990, section 2.3).
+/// Either this is an affine form of F, or the mean value theorem: F is continuous on a convex set that holds the points, and its
+/// generalised gradients there are enclosed (Neumaier, Interval Methods for Systems of Equations, 1990, section 2.3).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Form {
     t: f64,
     value: Ball,
     by_column: Ball,
     by_row: Ball,
+    incline: Ball,
     /// The derivative of F along every ray of the beam.
     pub(super) slope: Ball,
     /// What no sum of columns, rows and the rest exceeds.
@@ -132,25 +134,75 @@ impl Form {
         let value = Ball::around(value);
         let vague = by_column.radius * column_radius + by_row.radius * row_radius + rest;
         let known = by_column.middle.abs() * column_radius + by_row.middle.abs() * row_radius;
+        let slope = gradient.along(d.middle).widened(gradient.magnitude_along(d.radius));
         let form = Self {
             t,
             value: Ball { middle: value.middle + offset.middle, ..value }.widened(offset.radius),
             by_column,
             by_row,
-            slope: gradient.along(d.middle).widened(gradient.magnitude_along(d.radius)),
+            incline: slope,
+            slope,
             across: (1.0 + ROUNDING) * (known + vague),
             reach,
         };
-        let is_finite =
-            [form.value.radius, form.slope.radius, form.across].iter().all(|radius| radius.is_finite());
-        if is_finite { form } else { Self::unknown(reach) }
+        form.if_finite()
+    }
+
+    /// What the affine forms of F and of its gradient say, which hold for the [forms](Beam::forms) of a stretch `reach` of the beam
+    /// around `t`, in a unit of t.
+    pub(super) fn affine(
+        beam: &Beam,
+        reach: Span,
+        (t, unit): (f64, f64),
+        [value, gradient @ ..]: [Affine; 4],
+    ) -> Self {
+        let d = &beam.directions;
+        let direction = d.middle.to_array();
+        let (mut middle, mut slopes, mut rest, mut size) = (0.0, DVec3::ZERO, 0.0, 0.0);
+        for (axis, partial) in gradient.iter().enumerate() {
+            middle += direction[axis] * partial.middle;
+            slopes += direction[axis] * partial.slopes;
+            rest += direction[axis].abs() * partial.rest;
+            let magnitude = partial.middle.abs() + partial.slopes.abs().element_sum() + partial.rest;
+            rest += d.radius[axis] * magnitude;
+            size += direction[axis].abs() * magnitude;
+        }
+        let radius = slopes.abs().element_sum() + rest + ROUNDING * size + f64::MIN_POSITIVE;
+        let exactly = |middle: f64| Ball { middle, radius: 0.0 };
+        // A beam of one column has no other.
+        let each = |slope: f64, radius: f64| if radius > 0.0 { slope / radius } else { 0.0 };
+        let across = value.slopes.x.abs() + value.slopes.y.abs();
+        let form = Self {
+            t,
+            value: Ball { middle: value.middle, radius: value.rest }.widened(ROUNDING * across),
+            by_column: exactly(each(value.slopes.x, beam.radii[0])),
+            by_row: exactly(each(value.slopes.y, beam.radii[1])),
+            incline: exactly(value.slopes.z / unit).widened(0.0),
+            slope: Ball { middle, radius }.widened(0.0),
+            across: (1.0 + ROUNDING) * across,
+            reach,
+        };
+        form.if_finite()
+    }
+
+    fn if_finite(self) -> Self {
+        let radii = [self.value.radius, self.incline.radius, self.slope.radius, self.across];
+        if radii.iter().all(|radius| radius.is_finite()) { self } else { Self::unknown(self.reach) }
     }
 
     /// A form that says nothing.
     pub(super) fn unknown(reach: Span) -> Self {
         let nothing = Ball { middle: 0.0, radius: f64::INFINITY };
-        let across = f64::INFINITY;
-        Self { t: 0.0, value: nothing, by_column: nothing, by_row: nothing, slope: nothing, across, reach }
+        Self {
+            t: 0.0,
+            value: nothing,
+            by_column: nothing,
+            by_row: nothing,
+            incline: nothing,
+            slope: nothing,
+            across: f64::INFINITY,
+            reach,
+        }
     }
 
     /// How far the ends of the stretch are from `t`.
@@ -165,7 +217,7 @@ impl Form {
 
     /// The sign of F, if it is the same everywhere.
     pub(super) fn sign(&self) -> Option<f64> {
-        let values = self.value.widened(self.across + self.slope.magnitude() * self.length());
+        let values = self.value.widened(self.across + self.incline.magnitude() * self.length());
         values.excludes_zero().then(|| values.middle.signum())
     }
 
@@ -182,24 +234,24 @@ impl Form {
     /// Where all roots lie, if F is monotone.
     pub(super) fn roots(&self) -> Interval {
         let value = self.value.widened(self.across).interval();
-        Interval::point(self.t).minus(value.over(self.slope.interval()))
+        Interval::point(self.t).minus(value.over(self.incline.interval()))
     }
 
     /// About where the roots are on the rays of its beam.
     pub(super) fn model(&self, beam: &Beam) -> Model {
-        let slope = self.slope.middle;
+        let incline = self.incline.middle;
         let [t, by_column, by_row] =
-            [self.value, self.by_column, self.by_row].map(|ball| -ball.middle / slope);
-        // From 0 = value + a·by_column + b·by_row + rest + (root − t)·slope for numbers of the balls.
+            [self.value, self.by_column, self.by_row].map(|ball| -ball.middle / incline);
+        // From 0 = value + a·by_column + b·by_row + rest + (root − t)·incline for numbers of the balls.
         let [across, along] = beam.radii;
         let known = self.by_column.middle.abs() * across + self.by_row.middle.abs() * along;
-        let off = self.value.radius + (self.across - known) + self.slope.radius * self.length();
-        let rounded = ROUNDING * (self.value.middle.abs() + self.across + self.t * slope.abs());
+        let off = self.value.radius + (self.across - known) + self.incline.radius * self.length();
+        let rounded = ROUNDING * (self.value.middle.abs() + self.across + self.t * incline.abs());
         Model {
             t: self.t + t,
             by_column,
             by_row,
-            uncertainty: (1.0 + ROUNDING) * (off + rounded) / slope.abs(),
+            uncertainty: (1.0 + ROUNDING) * (off + rounded) / incline.abs(),
         }
     }
 }

@@ -38,6 +38,9 @@ const OVERLAP: f64 = 1.0 / 16.0;
 /// The least overlap, as part of the tile's farthest distance.
 const LEAST_OVERLAP: f64 = 1.0 / (1u64 << 30) as f64;
 
+/// Over beams of more columns and rows F is enclosed before forms are asked for.
+const VAGUE: usize = 8;
+
 /// How many boxes may be enclosed for each ray of a tile before the rest is left to single rays.
 const WORK_LIMIT: u64 = 64;
 
@@ -340,12 +343,55 @@ impl<'a> Subdivision<'a> {
 
     /// Encloses F over slabs that lie where the same kernels hold, and keeps those that may hold roots.
     fn keep_open(&mut self, mut slabs: &mut [Slab]) {
-        let Some(&Slab { kernels, .. }) = slabs.first() else { return };
-        if self.kernels(kernels).may_be_shortened() {
-            // The gradient of a formula with branches takes much longer than its values, which often say enough.
+        let Some(&Slab { beam, kernels, .. }) = slabs.first() else { return };
+        let (area, kernels) = (self.beam(beam).area, self.kernels(kernels));
+        let is_large = area.width.max(area.height) > VAGUE;
+        let has_forms = kernels.forms().is_some();
+        if kernels.may_be_shortened() || has_forms && is_large {
+            // The gradient of a formula with branches takes much longer than its values, which often say enough. Of large sets
+            // forms say less than enclosures.
             let count = self.drop_free(slabs);
             slabs = &mut slabs[..count];
         }
+        if has_forms {
+            self.keep_by_forms(slabs);
+        } else {
+            self.keep_by_gradients(slabs);
+        }
+    }
+
+    /// Keeps slabs that may hold roots, as far as affine forms tell, which know how F depends on column, row and t.
+    fn keep_by_forms(&mut self, slabs: &mut [Slab]) {
+        let Some(&Slab { kernels, .. }) = slabs.first() else { return };
+        let Workspace { forms, scratch, counters, .. } = &mut *self.workspace;
+        let mut units = [(0.0, 0.0); BATCH];
+        forms.clear();
+        for (slab, unit) in slabs.iter().zip(&mut units) {
+            let (arguments, of_t) = self.memory.beams[slab.beam as usize].forms(slab.reach);
+            forms.push(arguments);
+            *unit = of_t;
+        }
+        let kernels = &self.kernels[kernels as usize];
+        forms.evaluate(kernels.forms().expect("there are forms"), scratch, 4);
+        counters.box_evaluations += slabs.len() as u64;
+        counters.operations += kernels.charge(Kernel::Forms, slabs.len());
+        self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
+        for number in 0..slabs.len() {
+            let forms = [0, 1, 2, 3].map(|output| self.workspace.forms.form(output, number));
+            let [Some(value), Some(x), Some(y), Some(z)] = forms else {
+                self.keep_by_gradients(&slabs[number..=number]);
+                continue;
+            };
+            let Slab { beam, kernels, stretch, reach, is_inside, .. } = slabs[number];
+            let form = Form::affine(self.beam(beam), reach, units[number], [value, x, y, z]);
+            if !form.excludes_zero() {
+                self.memory.ahead.push(Part { beam, kernels, stretch, form, is_inside });
+            }
+        }
+    }
+
+    /// Keeps slabs that may hold roots, as far as enclosures of F and its gradient tell.
+    fn keep_by_gradients(&mut self, slabs: &[Slab]) {
         self.enclose(slabs);
         let (mut open, mut count) = ([0; BATCH], 0);
         for number in 0..slabs.len() {
