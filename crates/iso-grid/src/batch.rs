@@ -74,8 +74,9 @@ impl PointBatch {
     }
 }
 
-/// How many arguments forms of a program take.
+/// How many arguments forms of a program take, and how many outputs those of F and its gradient have.
 const ARGUMENTS: usize = 3 * Program::FORM;
+const OUTPUTS: usize = 4 * Program::FORM;
 
 /// An affine form: the numbers middle + ∑ slopeᵢ·eᵢ + r for the same eᵢ from −1 to 1, and |r| ≤ rest. Nothing is known where a part is
 /// not finite.
@@ -84,6 +85,13 @@ pub(crate) struct Affine {
     pub(crate) middle: f64,
     pub(crate) slopes: DVec3,
     pub(crate) rest: f64,
+}
+
+impl Affine {
+    #[inline]
+    fn of(&[middle, a, b, c, rest]: &[f64; Program::FORM]) -> Self {
+        Self { middle, slopes: DVec3::new(a, b, c), rest }
+    }
 }
 
 /// Sets of points, each by the affine forms of x, y and z, and what a kernel says of F and its gradient there.
@@ -98,8 +106,8 @@ impl FormBatch {
         self.arguments.iter_mut().for_each(Vec::clear);
     }
 
-    pub(crate) fn push(&mut self, forms: [Affine; 3]) {
-        for (form, arguments) in forms.into_iter().zip(self.arguments.as_chunks_mut().0) {
+    pub(crate) fn push(&mut self, forms: &[Affine; 3]) {
+        for (form, arguments) in forms.iter().zip(self.arguments.as_chunks_mut().0) {
             let [middle, a, b, c, rest]: &mut [Vec<f64>; Program::FORM] = arguments;
             middle.push(form.middle);
             a.push(form.slopes.x);
@@ -113,20 +121,25 @@ impl FormBatch {
         self.arguments[0].len()
     }
 
-    /// Finds the forms of all `outputs` of the kernel.
-    pub(crate) fn evaluate(&mut self, kernel: &dyn BatchKernel, scratch: &mut Scratch, outputs: usize) {
-        self.found.resize(Program::FORM * outputs * self.len(), f64::NAN);
+    /// Finds the forms of F and its gradient by their kernel.
+    pub(crate) fn evaluate(&mut self, kernel: &dyn BatchKernel, scratch: &mut Scratch) {
+        self.found.resize(OUTPUTS * self.len(), f64::NAN);
         if self.len() > 0 {
             kernel.evaluate(scratch, &self.arguments.each_ref().map(Vec::as_slice), &mut self.found);
         }
     }
 
-    /// The form of an output on a set of points; `None` where nothing is known.
-    pub(crate) fn form(&self, output: usize, number: usize) -> Option<Affine> {
-        let part = |part: usize| self.found[(Program::FORM * output + part) * self.len() + number];
-        let [middle, a, b, c, rest] = [0, 1, 2, 3, 4].map(part);
-        let form = Affine { middle, slopes: DVec3::new(a, b, c), rest };
-        (middle.is_finite() && form.slopes.is_finite() && rest.is_finite()).then_some(form)
+    /// The forms of F and its gradient on a set of points; `None` where nothing is known.
+    pub(crate) fn found(&self, number: usize) -> Option<[Affine; 4]> {
+        let mut parts = [0.0; OUTPUTS];
+        for (part, found) in parts.iter_mut().zip(self.found[number..].iter().step_by(self.len())) {
+            *part = *found;
+        }
+        let forms: &[[f64; Program::FORM]; 4] = parts.as_chunks().0.try_into().expect("four forms");
+        let [value, x, y, z] = forms;
+        // Whatever is not finite is not finite in the sum either.
+        let is_known = parts.iter().map(|part| part.abs()).sum::<f64>().is_finite();
+        is_known.then(|| [Affine::of(value), Affine::of(x), Affine::of(y), Affine::of(z)])
     }
 }
 

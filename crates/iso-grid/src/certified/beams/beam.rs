@@ -67,12 +67,13 @@ impl Beam {
         // Of the product of t and a direction, what both add is left.
         let rest = o.rest + span.end * d.rest + unit * d.radius;
         let rest = rest + ROUNDINGS * (o.size + span.end * d.size) + DVec3::splat(f64::MIN_POSITIVE);
+        let [a, b, c] = slopes;
         let form = |axis: usize| Affine {
             middle: middle[axis],
-            slopes: DVec3::from_array(slopes.map(|slope| slope[axis])),
+            slopes: DVec3::new(a[axis], b[axis], c[axis]),
             rest: rest[axis],
         };
-        ([0, 1, 2].map(form), (t, unit))
+        ([form(0), form(1), form(2)], (t, unit))
     }
 
     /// A stretch, from 0 on, that holds the part of every ray in the region, and ends before it starts when all miss it.

@@ -94,7 +94,7 @@ impl Gradient {
 }
 
 /// F near a point of a beam: for the ray that is a columns and b rows off its middle, and for every t of the stretch,
-/// F = `value` + a·`by_column` + b·`by_row` + (t − `t`)·`incline` up to `rest`, for some numbers of these balls; and F is continuous.
+/// F = `value` + a·`by_column` + b·`by_row` + (t − `t`)·`incline` up to `rest`, for some numbers of the balls; and F is continuous.
 ///
 /// Either this is an affine form of F, or the mean value theorem: F is continuous on a convex set that holds the points, and its
 /// generalised gradients there are enclosed (Neumaier, Interval Methods for Systems of Equations, 1990, section 2.3).
@@ -102,8 +102,8 @@ impl Gradient {
 pub(super) struct Form {
     t: f64,
     value: Ball,
-    by_column: Ball,
-    by_row: Ball,
+    by_column: f64,
+    by_row: f64,
     incline: Ball,
     /// The derivative of F along every ray of the beam.
     pub(super) slope: Ball,
@@ -138,8 +138,8 @@ impl Form {
         let form = Self {
             t,
             value: Ball { middle: value.middle + offset.middle, ..value }.widened(offset.radius),
-            by_column,
-            by_row,
+            by_column: by_column.middle,
+            by_row: by_row.middle,
             incline: slope,
             slope,
             across: (1.0 + ROUNDING) * (known + vague),
@@ -154,7 +154,7 @@ impl Form {
         beam: &Beam,
         reach: Span,
         (t, unit): (f64, f64),
-        [value, gradient @ ..]: [Affine; 4],
+        [value, gradient @ ..]: &[Affine; 4],
     ) -> Self {
         let d = &beam.directions;
         let direction = d.middle.to_array();
@@ -168,16 +168,15 @@ impl Form {
             size += direction[axis].abs() * magnitude;
         }
         let radius = slopes.abs().element_sum() + rest + ROUNDING * size + f64::MIN_POSITIVE;
-        let exactly = |middle: f64| Ball { middle, radius: 0.0 };
         // A beam of one column has no other.
         let each = |slope: f64, radius: f64| if radius > 0.0 { slope / radius } else { 0.0 };
         let across = value.slopes.x.abs() + value.slopes.y.abs();
         let form = Self {
             t,
             value: Ball { middle: value.middle, radius: value.rest }.widened(ROUNDING * across),
-            by_column: exactly(each(value.slopes.x, beam.radii[0])),
-            by_row: exactly(each(value.slopes.y, beam.radii[1])),
-            incline: exactly(value.slopes.z / unit).widened(0.0),
+            by_column: each(value.slopes.x, beam.radii[0]),
+            by_row: each(value.slopes.y, beam.radii[1]),
+            incline: Ball { middle: value.slopes.z / unit, radius: 0.0 }.widened(0.0),
             slope: Ball { middle, radius }.widened(0.0),
             across: (1.0 + ROUNDING) * across,
             reach,
@@ -196,8 +195,8 @@ impl Form {
         Self {
             t: 0.0,
             value: nothing,
-            by_column: nothing,
-            by_row: nothing,
+            by_column: 0.0,
+            by_row: 0.0,
             incline: nothing,
             slope: nothing,
             across: f64::INFINITY,
@@ -241,10 +240,10 @@ impl Form {
     pub(super) fn model(&self, beam: &Beam) -> Model {
         let incline = self.incline.middle;
         let [t, by_column, by_row] =
-            [self.value, self.by_column, self.by_row].map(|ball| -ball.middle / incline);
+            [self.value.middle, self.by_column, self.by_row].map(|middle| -middle / incline);
         // From 0 = value + a·by_column + b·by_row + rest + (root − t)·incline for numbers of the balls.
         let [across, along] = beam.radii;
-        let known = self.by_column.middle.abs() * across + self.by_row.middle.abs() * along;
+        let known = self.by_column.abs() * across + self.by_row.abs() * along;
         let off = self.value.radius + (self.across - known) + self.incline.radius * self.length();
         let rounded = ROUNDING * (self.value.middle.abs() + self.across + self.t * incline.abs());
         Model {

@@ -368,22 +368,21 @@ impl<'a> Subdivision<'a> {
         forms.clear();
         for (slab, unit) in slabs.iter().zip(&mut units) {
             let (arguments, of_t) = self.memory.beams[slab.beam as usize].forms(slab.reach);
-            forms.push(arguments);
+            forms.push(&arguments);
             *unit = of_t;
         }
         let kernels = &self.kernels[kernels as usize];
-        forms.evaluate(kernels.forms().expect("there are forms"), scratch, 4);
+        forms.evaluate(kernels.forms().expect("there are forms"), scratch);
         counters.box_evaluations += slabs.len() as u64;
         counters.operations += kernels.charge(Kernel::Forms, slabs.len());
         self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
         for number in 0..slabs.len() {
-            let forms = [0, 1, 2, 3].map(|output| self.workspace.forms.form(output, number));
-            let [Some(value), Some(x), Some(y), Some(z)] = forms else {
+            let Some(found) = self.workspace.forms.found(number) else {
                 self.keep_by_gradients(&slabs[number..=number]);
                 continue;
             };
             let Slab { beam, kernels, stretch, reach, is_inside, .. } = slabs[number];
-            let form = Form::affine(self.beam(beam), reach, units[number], [value, x, y, z]);
+            let form = Form::affine(self.beam(beam), reach, units[number], &found);
             if !form.excludes_zero() {
                 self.memory.ahead.push(Part { beam, kernels, stretch, form, is_inside });
             }
