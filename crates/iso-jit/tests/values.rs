@@ -4,7 +4,7 @@
 mod values;
 
 use iso_expr::random::Random;
-use iso_expr::{Axis, Engine, Operation, Program, Scratch};
+use iso_expr::{Axis, Engine, Interpreter, Operation, Program, Scratch};
 use iso_jit::Jit;
 use values::{bits, points, values_agree};
 
@@ -108,4 +108,38 @@ fn a_function_agrees_with_the_point_kernel() {
             assert_eq!(bits(&[function.call(x, y, z)]), bits(&value));
         }
     }
+}
+
+/// Programs of affine forms take fifteen arguments.
+#[test]
+fn forms_agree_whatever_the_formula() {
+    let (jit, mut random) = (Jit::new().unwrap(), Random::new(9));
+    let operations: Vec<_> = Operation::all().filter(|operation| has_form(*operation)).collect();
+    for round in 0..150 {
+        let program = random.program_of(1 + round % 12, &operations);
+        let forms = program.with_forms().expect("all of these have forms");
+        let count = 1 + round % 5;
+        let ordinary = round % 3 > 0;
+        let number = |_| if ordinary { random.between(-1.0, 1.0) } else { random.double() };
+        let arguments: Vec<f64> = (0..15 * count).map(number).collect();
+        let arguments: Vec<&[f64]> = arguments.chunks(count).collect();
+        let [native, reference] = [&jit as &dyn Engine, &Interpreter].map(|engine| {
+            let mut values = vec![0.0; Program::FORM * count];
+            engine.batch(&forms).unwrap().evaluate(&mut Scratch::default(), &arguments, &mut values);
+            bits(&values)
+        });
+        assert_eq!(native, reference, "{program}");
+    }
+}
+
+/// Whether the forms of one operation exist.
+fn has_form(operation: Operation) -> bool {
+    let mut program = Program::new();
+    let variables = Axis::ALL.map(|axis| program.variable(axis));
+    let output = match operation {
+        Operation::IntegerPower => program.integer_power(variables[0], 3),
+        _ => program.apply(operation, &variables[..operation.arity()]),
+    };
+    program.set_outputs(vec![output]);
+    program.with_forms().is_some()
 }

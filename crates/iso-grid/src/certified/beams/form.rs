@@ -276,3 +276,80 @@ impl Model {
         self.t + (across * self.by_column + along * self.by_row)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use iso_expr::random::Random;
+    use iso_expr::{Ast, Interpreter, Scratch};
+
+    use super::*;
+    use crate::area::Area;
+    use crate::batch::{FormBatch, PointBatch};
+    use crate::{Raster, Surface, Tile};
+
+    const FORMULAS: [&str; 5] = [
+        "(x^2 + 2y^2 + z^2 - 1)^3 - x^2*z^3 - y^2*z^3/9",
+        "1/(x^2 + y^2 + 1) - exp(-(x - z)^2) + 0.3",
+        "sin(2x)cos(y) + sin(y)cos(3z) + sin(z)cos(x)",
+        "sqrt(x^2 + y^2 + 0.1)*z - abs(x - y)",
+        "max(x^2 + y*z - 1, x - z, min(y, x*z))",
+    ];
+
+    fn raster(random: &mut Random, is_parallel: bool) -> Raster {
+        let mut vector = || DVec3::from_array([(); 3].map(|()| random.between(-1.0, 1.0)));
+        let (middle, forward, up) = (3.0 * vector(), vector().normalize(), vector());
+        let right = 0.01 * forward.cross(up).normalize();
+        let down = forward.cross(right);
+        match is_parallel {
+            true => Raster::Parallel { middle, right, down, direction: 0.8 * forward },
+            false => Raster::Spreading { eye: middle, forward, right, down },
+        }
+    }
+
+    /// F at points of rays of a part, and its slope along them, are what the form of the part says.
+    #[test]
+    fn values_and_slopes_are_what_affine_forms_say() {
+        let mut random = Random::new(21);
+        let mut scratch = Scratch::default();
+        let mut closest: [f64; 2] = [0.0; 2];
+        for round in 0..600 {
+            let program = Ast::parse(FORMULAS[round % FORMULAS.len()]).unwrap().lower(&[]).unwrap();
+            let program = program.minus_level(0.0).simplified();
+            let surface = Surface::new(std::sync::Arc::new(Interpreter), program);
+            let raster = raster(&mut random, round % 2 == 0);
+            let tile = Tile::of(&raster, [random.between(-20.0, 20.0), 3.5], 64, 64);
+            let side = 1 << random.below(6);
+            let area = Area { column: random.below(30), row: random.below(30), width: side, height: side };
+            let beam = Beam::new(&tile, area);
+            let start = random.between(0.0, 3.0);
+            let reach = Span { start, end: start + random.between(0.0, 0.02 * side as f64) };
+            let (arguments, (t, unit)) = beam.forms(reach);
+            let mut forms = FormBatch::default();
+            forms.push(&arguments);
+            forms.evaluate(&**surface.forms().unwrap(), &mut scratch);
+            let Some(found) = forms.found(0) else { continue };
+            let form = Form::affine(&beam, reach, (t, unit), &found);
+            let gradients = surface.gradients().unwrap();
+            for _ in 0..20 {
+                let (column, row) = (area.column + random.below(side), area.row + random.below(side));
+                let ray = tile.ray(column, row);
+                let at = reach.start + random.between(0.0, 1.0) * (reach.end - reach.start);
+                let mut points = PointBatch::default();
+                points.push(ray.at(at));
+                let [value, x, y, z] = points.evaluate(&**gradients, &mut scratch, 4) else {
+                    unreachable!("F and its gradient are four outputs")
+                };
+                let (a, b) = area.offset(column, row);
+                let line = form.value.middle + a * form.by_column + b * form.by_row;
+                let off = (value - (line + (at - form.t) * form.incline.middle)).abs();
+                let slope = DVec3::new(*x, *y, *z).dot(ray.direction);
+                let turn = (slope - form.slope.middle).abs();
+                let slack = 1e-12;
+                let radius = form.value.radius + unit * form.incline.radius;
+                assert!(off <= radius + slack && turn <= form.slope.radius + slack, "{off} {turn} {form:?}");
+                closest = [closest[0].max(off / radius), closest[1].max(turn / form.slope.radius)];
+            }
+        }
+        assert!(closest.iter().all(|closest| *closest > 0.7), "forms hold far more: {closest:?}");
+    }
+}
