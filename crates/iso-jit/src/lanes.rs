@@ -131,11 +131,17 @@ impl Writer<'_, '_> {
         self.builder.ins().insertlane(low, high, 1)
     }
 
-    /// Calls a function of a pointer to the doubles of all `operands`, one after the other, which it replaces.
-    pub(crate) fn call_in_place(&mut self, function: FuncRef, operands: &[Value]) -> Vec<Value> {
+    /// Calls a function of a pointer to the doubles of all `operands`, one after the other, which it replaces by `count` results,
+    /// no more than twice as many.
+    pub(crate) fn call_in_place(
+        &mut self,
+        function: FuncRef,
+        operands: &[Value],
+        count: usize,
+    ) -> Vec<Value> {
         let ty = self.lanes.ty();
         let room = *self.room.get_or_insert_with(|| {
-            let size = ty.bytes() * operands.len() as u32;
+            let size = 2 * ty.bytes() * operands.len() as u32;
             let align_shift = size_of::<f64>().trailing_zeros() as u8;
             let slot = StackSlotData::new(StackSlotKind::ExplicitSlot, size, align_shift);
             self.builder.create_sized_stack_slot(slot)
@@ -146,8 +152,8 @@ impl Writer<'_, '_> {
         }
         let address = self.builder.ins().stack_addr(types::I64, room, 0);
         self.builder.ins().call(function, &[address]);
-        let load = |(_, offset)| self.builder.ins().stack_load(types::I64, ty, room, offset);
-        operands.iter().zip(offsets).map(load).collect()
+        let load = |offset| self.builder.ins().stack_load(types::I64, ty, room, offset);
+        offsets.take(count).map(load).collect()
     }
 
     fn call_once(&mut self, function: FuncRef, operands: &[Value]) -> Value {

@@ -15,6 +15,9 @@ const PREFIX: &str = "iso_";
 /// Begins the name of every function of several doubles at once.
 const IN_LANES: &str = "iso_lanes_";
 
+/// The function of the sines and cosines of several doubles.
+const BOTH_IN_LANES: &str = "iso_both_in_lanes";
+
 /// The function that applies interval extensions.
 const EXTEND: &str = "iso_extend";
 
@@ -28,6 +31,9 @@ pub(crate) fn address(name: &str) -> Option<*const u8> {
     }
     if name == EXTEND_TO_BOTH {
         return Some(trampoline::extend_to_both as *const u8);
+    }
+    if name == BOTH_IN_LANES {
+        return elementary::both_of_eight().map(|function| function as *const u8);
     }
     if let Some(name) = name.strip_prefix(IN_LANES) {
         return elementary::function(operation(name)?).map(|function| function as *const u8);
@@ -71,6 +77,14 @@ impl<'a> Calls<'a> {
         elementary::function(operation)?;
         let pointer = AbiParam::new(types::I64);
         Some(self.declare(kernel, format!("{IN_LANES}{operation:?}"), vec![pointer], Vec::new()))
+    }
+
+    /// The function that puts sines of [`elementary::WIDTH`] arguments in their place and cosines behind them, if there is one, to
+    /// be called from `kernel`.
+    pub(crate) fn both_in_lanes(&mut self, kernel: &mut Function) -> Option<FuncRef> {
+        elementary::both_of_eight()?;
+        let pointer = AbiParam::new(types::I64);
+        Some(self.declare(kernel, BOTH_IN_LANES.to_owned(), vec![pointer], Vec::new()))
     }
 
     /// [`trampoline::extend`], to be called from `kernel`.

@@ -1,5 +1,7 @@
 //! Values of operations, written as instructions: bit for bit what [`Operation::value`] gives.
 
+use std::collections::HashMap;
+
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{InstBuilder, Value};
 use iso_expr::{Argument, Node, NodeId, Operation, Program};
@@ -36,15 +38,31 @@ pub(crate) fn evaluate(
 ) -> Vec<Vec<Value>> {
     let mut values: Vec<Vec<Value>> = vec![Vec::with_capacity(program.nodes().len()); count];
     let fill_lanes = count * writer.lanes.count() == elementary::WIDTH;
+    let pairs = if fill_lanes { waves(program) } else { HashMap::new() };
+    // The sines and cosines of what both are taken of, from when one is needed on.
+    let mut both = HashMap::new();
     for node in program.nodes() {
         let of = |operand: NodeId| values.iter().map(move |values| values[operand.index()]);
         let results: Vec<Value> = match node {
             Node::Variable(number) => argument(writer, *number),
             Node::Constant(constant) => vec![writer.constant(constant.value()); count],
+            Node::Apply(operation @ (Operation::Sin | Operation::Cos), [operand, ..])
+                if pairs.get(operand) == Some(&[true; 2])
+                    && let Some(function) = calls.both_in_lanes(writer.builder.func) =>
+            {
+                let results: &Vec<Value> = both.entry(*operand).or_insert_with(|| {
+                    let operands: Vec<_> = of(*operand).collect();
+                    writer.call_in_place(function, &operands, 2 * count)
+                });
+                let (sines, cosines) = results.split_at(count);
+                if *operation == Operation::Sin { sines.to_vec() } else { cosines.to_vec() }
+            }
             Node::Apply(operation, operands) => {
                 let in_lanes = fill_lanes.then(|| calls.in_lanes(writer.builder.func, *operation)).flatten();
                 match in_lanes {
-                    Some(function) => writer.call_in_place(function, &of(operands[0]).collect::<Vec<_>>()),
+                    Some(function) => {
+                        writer.call_in_place(function, &of(operands[0]).collect::<Vec<_>>(), count)
+                    }
                     None => {
                         let [a, b, c] = operands.map(of);
                         let operands = a.zip(b).zip(c).map(|((a, b), c)| [a, b, c]);
@@ -57,6 +75,17 @@ pub(crate) fn evaluate(
     }
     let outputs = |values: Vec<Value>| program.outputs().iter().map(|id| values[id.index()]).collect();
     values.into_iter().map(outputs).collect()
+}
+
+/// Whether sines and cosines are taken of the nodes that one of them is taken of.
+fn waves(program: &Program) -> HashMap<NodeId, [bool; 2]> {
+    let mut waves: HashMap<NodeId, [bool; 2]> = HashMap::new();
+    for node in program.nodes() {
+        if let Node::Apply(operation @ (Operation::Sin | Operation::Cos), [operand, ..]) = node {
+            waves.entry(*operand).or_default()[usize::from(*operation == Operation::Cos)] = true;
+        }
+    }
+    waves
 }
 
 /// Writes one operation. Only as many operands as its arity count.

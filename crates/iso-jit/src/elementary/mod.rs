@@ -42,6 +42,17 @@ pub(crate) fn sines_and_cosines() -> Option<InPlace> {
     return None;
 }
 
+/// Replaces arguments by their sines, and what stands behind them by their cosines, under the same condition.
+pub(crate) type InPlaceOfBoth = unsafe extern "C" fn(&mut [[f64; WIDTH]; 2]);
+
+/// The function of eight doubles that gives their sines and cosines, under the same condition.
+pub(crate) fn both_of_eight() -> Option<InPlaceOfBoth> {
+    #[cfg(target_arch = "x86_64")]
+    return x86::of_both_of_eight().next();
+    #[cfg(not(target_arch = "x86_64"))]
+    return None;
+}
+
 /// A value somewhere in hi + lo ± error.
 #[derive(Clone, Copy)]
 struct Approximation {
@@ -51,6 +62,15 @@ struct Approximation {
     error: f64,
 }
 
+impl Approximation {
+    /// Puts the doubles next to both ends in a lane.
+    #[inline(always)]
+    fn bound(self, lane: usize, [least, most]: &mut [[f64; WIDTH]; 2]) {
+        least[lane] = self.hi + (self.lo - self.error);
+        most[lane] = self.hi + (self.lo + self.error);
+    }
+}
+
 /// Approximates where that decides the rounding, else calls the function. Both are given the lane.
 #[inline(always)]
 fn round(
@@ -58,23 +78,27 @@ fn round(
     approximate: impl Fn(usize, f64) -> Approximation,
     function: impl Fn(usize, f64) -> f64,
 ) {
-    let (mut least, mut most) = ([0.0; WIDTH], [0.0; WIDTH]);
-    for lane in 0..WIDTH {
-        let Approximation { hi, lo, error } = approximate(lane, arguments[lane]);
-        least[lane] = hi + (lo - error);
-        most[lane] = hi + (lo + error);
+    let mut bounds = [[0.0; WIDTH]; 2];
+    for (lane, argument) in arguments.iter().enumerate() {
+        approximate(lane, *argument).bound(lane, &mut bounds);
     }
+    *arguments = decided(bounds, |lane| function(lane, arguments[lane]));
+}
+
+/// The value in each lane where its bounds are the same, else what `function` gives.
+#[inline(always)]
+fn decided([mut least, most]: [[f64; WIDTH]; 2], function: impl Fn(usize) -> f64) -> [f64; WIDTH] {
     // Counted rather than searched, which is one comparison of all lanes.
     let undecided: u64 = (0..WIDTH).map(|lane| u64::from(least[lane] != most[lane])).sum();
     if undecided > 0 {
         for lane in 0..WIDTH {
             // An unknown value is not even equal to itself.
             if least[lane] != most[lane] {
-                least[lane] = function(lane, arguments[lane]);
+                least[lane] = function(lane);
             }
         }
     }
-    *arguments = least;
+    least
 }
 
 /// The scalar function of an operation of one operand.
@@ -98,7 +122,7 @@ fn nearest_integer(a: f64) -> (f64, u64) {
 mod x86 {
     use iso_expr::Operation;
 
-    use super::{InPlace, WIDTH, round, scalar, sine};
+    use super::{InPlace, InPlaceOfBoth, WIDTH, decided, round, scalar, sine};
 
     /// The versions that this processor runs, the fastest first.
     pub(super) fn versions(operation: Operation) -> impl Iterator<Item = InPlace> {
@@ -115,6 +139,15 @@ mod x86 {
         let has_narrow = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
         let wide = has_wide.then_some(avx512::sines_and_cosines as InPlace);
         let narrow = has_narrow.then_some(avx2::sines_and_cosines as InPlace);
+        wide.into_iter().chain(narrow)
+    }
+
+    /// The versions of [`both_of_eight`](super::both_of_eight) that this processor runs, the fastest first.
+    pub(super) fn of_both_of_eight() -> impl Iterator<Item = InPlaceOfBoth> {
+        let has_wide = is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq");
+        let has_narrow = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
+        let wide = has_wide.then_some(avx512::both_of_eight as InPlaceOfBoth);
+        let narrow = has_narrow.then_some(avx2::both_of_eight as InPlaceOfBoth);
         wide.into_iter().chain(narrow)
     }
 
@@ -140,6 +173,19 @@ mod x86 {
                 #[target_feature(enable = $features)]
                 extern "C" fn cos(arguments: &mut [f64; WIDTH]) {
                     round(arguments, |_, x| sine::cos(x), |_, x| scalar(Operation::Cos)(x));
+                }
+
+                #[target_feature(enable = $features)]
+                pub(super) extern "C" fn both_of_eight([sines, cosines]: &mut [[f64; WIDTH]; 2]) {
+                    let arguments = *sines;
+                    let (mut of_sines, mut of_cosines) = ([[0.0; WIDTH]; 2], [[0.0; WIDTH]; 2]);
+                    for (lane, argument) in arguments.iter().enumerate() {
+                        let [sine, cosine] = sine::sin_and_cos(*argument);
+                        sine.bound(lane, &mut of_sines);
+                        cosine.bound(lane, &mut of_cosines);
+                    }
+                    *sines = decided(of_sines, |lane| scalar(Operation::Sin)(arguments[lane]));
+                    *cosines = decided(of_cosines, |lane| scalar(Operation::Cos)(arguments[lane]));
                 }
 
                 #[target_feature(enable = $features)]

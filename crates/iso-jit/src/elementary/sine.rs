@@ -19,55 +19,86 @@ static WAVE: [[Double; 2]; STEPS] = wave();
 
 #[inline(always)]
 pub(super) fn sin(x: f64) -> Approximation {
-    shifted(x, 0)
+    let near = Near::of(x, 0);
+    near.turned(near.sine, near.cosine)
 }
 
 #[inline(always)]
 pub(super) fn cos(x: f64) -> Approximation {
-    shifted(x, STEPS / 4)
+    let near = Near::of(x, 0);
+    near.turned(near.cosine, near.sine.negated())
 }
 
 /// The sine, or the cosine.
 #[inline(always)]
 pub(super) fn sin_or_cos(is_sine: bool, x: f64) -> Approximation {
-    shifted(x, if is_sine { 0 } else { STEPS / 4 })
+    let near = Near::of(x, if is_sine { 0 } else { STEPS / 4 });
+    near.turned(near.sine, near.cosine)
 }
 
-/// sin(x + shift·π/128).
-///
-/// With S and C the sine and cosine of the nearest step and r the rest, at most π/256 < 2⁻⁶·³: S·cos r + C·sin r. Errors, as
-/// parts of the result, which is at least S/2 (at S = 0 only those of sin r count):
-///
-/// - r²'s 2·2⁻⁵³, that of cos r's polynomial 2⁻⁵³ and that of their product 2⁻⁵³, times r²/2 < 2⁻¹³·⁷ and 2: 2⁻⁶³·⁷;
-/// - sums of terms below r²/2, at most three times 2⁻⁵³ of them, half of that being 2⁻⁵⁴: 2⁻⁶⁴;
-/// - the series cut off: 2⁻⁶⁹ of sin r after r⁷, 2⁻⁸⁵ of cos r after r⁸;
-/// - r's own error, 2⁻¹⁰³, from k < 2²⁰ steps, absolute.
-///
-/// Together 2⁻⁶²·⁸; the greatest that was seen, in 50,000 values beside ones of 250 bits, is 2⁻⁶⁴·⁸.
+/// The sine and the cosine, for little more than one of them.
 #[inline(always)]
-fn shifted(x: f64, shift: usize) -> Approximation {
-    let (steps, index) = nearest_integer(x * STEPS_PER_RADIAN);
-    let [sine, cosine] = WAVE[(index as usize).wrapping_add(shift) % STEPS];
+pub(super) fn sin_and_cos(x: f64) -> [Approximation; 2] {
+    let near = Near::of(x, 0);
+    [near.turned(near.sine, near.cosine), near.turned(near.cosine, near.sine.negated())]
+}
 
-    // Exact: a multiple of x's last place or of 2⁻³⁸, and less than 2⁻⁶.
-    let rest = (-steps).mul_add(STEP[0], x);
-    let rest = Double::sum(rest, -(steps * STEP[1]));
-    let rest = Double::sum(rest.hi, (-steps).mul_add(STEP[2], rest.lo));
-    let r = rest.hi;
-    let square = (r + r).mul_add(rest.lo, r * r);
+/// What the sine of a number is computed from.
+#[derive(Clone, Copy)]
+struct Near {
+    /// Sine and cosine of the nearest step.
+    sine: Double,
+    cosine: Double,
+    /// The rest, and its square.
+    rest: Double,
+    square: f64,
+    /// (sin r − r)/r³ and (cos r − 1)/r² for the rest r.
+    sine_tail: f64,
+    cosine_tail: f64,
+    is_covered: bool,
+}
 
-    // (sin r − r)/r³ and (cos r − 1)/r².
-    let sine_tail = square.mul_add(square.mul_add(-1.0 / 5040.0, 1.0 / 120.0), -1.0 / 6.0);
-    let cosine_tail =
-        square.mul_add(square.mul_add(square.mul_add(1.0 / 40320.0, -1.0 / 720.0), 1.0 / 24.0), -0.5);
+impl Near {
+    /// Of x + shift·π/128.
+    #[inline(always)]
+    fn of(x: f64, shift: usize) -> Self {
+        let (steps, index) = nearest_integer(x * STEPS_PER_RADIAN);
+        let [sine, cosine] = WAVE[(index as usize).wrapping_add(shift) % STEPS];
 
-    let turned = Double::product(cosine.hi, r);
-    let Double { hi, lo } = Double::sum(sine.hi, turned.hi);
-    let sine_rest = (r * square).mul_add(sine_tail, rest.lo);
-    let small = (sine.lo + turned.lo) + cosine.lo.mul_add(r, cosine.hi * sine_rest);
-    let lo = lo + sine.hi.mul_add(square * cosine_tail, small);
-    let error = if x.abs() < LARGEST { hi.abs() * 2f64.powi(-62) + 2f64.powi(-98) } else { f64::INFINITY };
-    Approximation { hi, lo, error }
+        // Exact: a multiple of x's last place or of 2⁻³⁸, and less than 2⁻⁶.
+        let rest = (-steps).mul_add(STEP[0], x);
+        let rest = Double::sum(rest, -(steps * STEP[1]));
+        let rest = Double::sum(rest.hi, (-steps).mul_add(STEP[2], rest.lo));
+        let r = rest.hi;
+        let square = (r + r).mul_add(rest.lo, r * r);
+
+        let sine_tail = square.mul_add(square.mul_add(-1.0 / 5040.0, 1.0 / 120.0), -1.0 / 6.0);
+        let cosine_tail =
+            square.mul_add(square.mul_add(square.mul_add(1.0 / 40320.0, -1.0 / 720.0), 1.0 / 24.0), -0.5);
+        Self { sine, cosine, rest, square, sine_tail, cosine_tail, is_covered: x.abs() < LARGEST }
+    }
+
+    /// The sine of the sum of the rest and an angle with this sine and cosine: S·cos r + C·sin r, with r at most π/256 < 2⁻⁶·³.
+    ///
+    /// Errors, as parts of the result, which is at least S/2 (at S = 0 only those of sin r count):
+    ///
+    /// - r²'s 2·2⁻⁵³, that of cos r's polynomial 2⁻⁵³ and that of their product 2⁻⁵³, times r²/2 < 2⁻¹³·⁷ and 2: 2⁻⁶³·⁷;
+    /// - sums of terms below r²/2, at most three times 2⁻⁵³ of them, half of that being 2⁻⁵⁴: 2⁻⁶⁴;
+    /// - the series cut off: 2⁻⁶⁹ of sin r after r⁷, 2⁻⁸⁵ of cos r after r⁸;
+    /// - r's own error, 2⁻¹⁰³, from k < 2²⁰ steps, absolute.
+    ///
+    /// Together 2⁻⁶²·⁸; the greatest that was seen, in 50,000 values beside ones of 250 bits, is 2⁻⁶⁴·⁸.
+    #[inline(always)]
+    fn turned(self, sine: Double, cosine: Double) -> Approximation {
+        let Self { rest, square, sine_tail, cosine_tail, is_covered, .. } = self;
+        let turned = Double::product(cosine.hi, rest.hi);
+        let Double { hi, lo } = Double::sum(sine.hi, turned.hi);
+        let sine_rest = (rest.hi * square).mul_add(sine_tail, rest.lo);
+        let small = (sine.lo + turned.lo) + cosine.lo.mul_add(rest.hi, cosine.hi * sine_rest);
+        let lo = lo + sine.hi.mul_add(square * cosine_tail, small);
+        let error = if is_covered { hi.abs() * 2f64.powi(-62) + 2f64.powi(-98) } else { f64::INFINITY };
+        Approximation { hi, lo, error }
+    }
 }
 
 /// Fills the first quarter from the series; the others turn it.

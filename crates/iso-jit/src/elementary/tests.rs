@@ -68,6 +68,22 @@ fn both_functions_of_four_are_those_of_eight_calls() {
     }
 }
 
+#[test]
+fn both_functions_of_eight_are_those_of_sixteen_calls() {
+    let mut random = Random::new(4);
+    let [sin, cos] = [Operation::Sin, Operation::Cos].map(scalar);
+    for _ in 0..250_000 {
+        let arguments: [f64; WIDTH] = std::array::from_fn(|_| argument(&mut random));
+        let expected = [arguments.map(|a| bits(sin(a))), arguments.map(|a| bits(cos(a)))];
+        for version in x86::of_both_of_eight() {
+            let mut values = [arguments, [0.0; WIDTH]];
+            // SAFETY: this processor runs the version.
+            unsafe { version(&mut values) };
+            assert_eq!(values.map(|values| values.map(bits)), expected, "{arguments:?}");
+        }
+    }
+}
+
 /// What is decided would be decided rightly with a quarter of the bounds too, so these are no close call; and most is decided.
 #[test]
 fn bounds_have_room_and_are_tight() {
