@@ -10,6 +10,7 @@ pub struct Batch {
     points: [Vec<f64>; 3],
     lo: [Vec<f64>; 3],
     hi: [Vec<f64>; 3],
+    forms: Vec<Vec<f64>>,
 }
 
 impl Batch {
@@ -25,12 +26,22 @@ impl Batch {
         });
         let moved =
             |by: f64| points.clone().map(|axis| axis.iter().map(|coordinate| coordinate + by).collect());
-        Self { lo: moved(-radius / 64.0), hi: moved(radius / 64.0), points }
+        let form = |axis: usize| {
+            let part = |symbol: usize| vec![radius / if symbol == axis { 64.0 } else { 128.0 }; COUNT];
+            [points[axis].clone(), part(0), part(1), part(2), vec![0.0; COUNT]]
+        };
+        let forms = (0..3).flat_map(form).collect();
+        Self { lo: moved(-radius / 64.0), hi: moved(radius / 64.0), forms, points }
     }
 
     /// The points.
     pub fn points(&self) -> [&[f64]; 3] {
         slices(&self.points)
+    }
+
+    /// Affine forms of sets of points that lie askew around the points, part by part.
+    pub fn forms(&self) -> Vec<&[f64]> {
+        self.forms.iter().map(Vec::as_slice).collect()
     }
 
     /// The boxes.

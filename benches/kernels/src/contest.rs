@@ -26,12 +26,21 @@ pub enum Discipline {
     Boxes,
     /// F and its gradient over a batch of boxes.
     BoxesGradient,
+    /// The affine forms of F and its gradient over a batch of sets of points.
+    Forms,
 }
 
 impl Discipline {
     /// All of them, from the least work to the most.
-    pub const ALL: [Self; 6] =
-        [Self::Function, Self::Point, Self::Batch, Self::BatchGradient, Self::Boxes, Self::BoxesGradient];
+    pub const ALL: [Self; 7] = [
+        Self::Function,
+        Self::Point,
+        Self::Batch,
+        Self::BatchGradient,
+        Self::Boxes,
+        Self::BoxesGradient,
+        Self::Forms,
+    ];
 
     /// Its name in tables.
     pub fn name(self) -> &'static str {
@@ -42,6 +51,7 @@ impl Discipline {
             Self::BatchGradient => "batch+gradient",
             Self::Boxes => "boxes",
             Self::BoxesGradient => "boxes+gradient",
+            Self::Forms => "forms",
         }
     }
 
@@ -52,6 +62,7 @@ impl Discipline {
             Self::BatchGradient => 4 * COUNT,
             Self::Boxes => 2 * COUNT,
             Self::BoxesGradient => 2 * 4 * COUNT,
+            Self::Forms => Program::FORM * 4 * COUNT,
         }
     }
 }
@@ -114,7 +125,7 @@ impl<'a> Formula<'a> {
                     _ => (self.gradient, native.gradients, native.wide_gradients),
                 };
                 for (name, engine) in engines {
-                    entries.push(Entry::new(name, batch_kernel(engine.batch(program)?, points)));
+                    entries.push(Entry::new(name, batch_kernel(engine.batch(program)?, points.to_vec())));
                 }
                 entries.push(Entry::new("rust", sweep(narrow, points)));
                 if has_avx512() {
@@ -131,6 +142,13 @@ impl<'a> Formula<'a> {
                 }
                 if let Some(rust) = rust {
                     entries.push(Entry::new("rust", box_sweep(rust, boxes)));
+                }
+            }
+            Discipline::Forms => {
+                let program = self.gradient.with_forms().expect("the measured formulas have forms");
+                for (name, engine) in engines {
+                    let arguments = self.batch.forms();
+                    entries.push(Entry::new(name, batch_kernel(engine.batch(&program)?, arguments)));
                 }
             }
         }
@@ -163,10 +181,10 @@ fn point_kernel<'a>(
 
 fn batch_kernel<'a>(
     kernel: std::sync::Arc<dyn BatchKernel>,
-    points: [&'a [f64]; 3],
+    arguments: Vec<&'a [f64]>,
 ) -> impl FnMut(&mut [f64]) + 'a {
     let mut scratch = Scratch::default();
-    move |values| kernel.evaluate(&mut scratch, &points, values)
+    move |values| kernel.evaluate(&mut scratch, &arguments, values)
 }
 
 fn box_kernel<'a>(kernel: std::sync::Arc<dyn BoxKernel>, batch: &'a Batch) -> impl FnMut(&mut [f64]) + 'a {

@@ -78,13 +78,10 @@ pub fn render_over(
     let bands = Band::all(picture, TILE);
     let work = Mutex::new(Work::default());
     tiles(size).into_par_iter().try_for_each_init(Tile::default, |tile, area| {
-        let is_finished = tile.render(scene, size, area)?;
-        if !is_finished {
-            tile.mark_unfinished(layers);
-        }
+        tile.render(scene, size, area)?;
         let band = &bands[(area.row / TILE) as usize];
         tile.put(&mut band.lock().expect("no thread panics while it holds a band"), size);
-        if is_finished {
+        if tile.content != Content::Unfinished {
             let mut work = work.lock().expect("no thread panics while it holds the sums");
             work.add(tile);
             progress(work.pixels, size.pixels() as u64);
@@ -120,11 +117,37 @@ fn tiles(size: Size) -> Vec<Area> {
         .collect()
 }
 
+/// What is known of a tile's pixels.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+enum Content {
+    /// Work was stopped before all are known.
+    #[default]
+    Unfinished,
+    /// None of their rays meets anything.
+    Nothing,
+    /// What stands in the tile's layers.
+    Found,
+}
+
+/// What stands for a pixel of which there is nothing to say.
+struct Mark {
+    depth: f64,
+    normal: DVec3,
+    status: Status,
+}
+
+impl Mark {
+    const NOTHING: Self = Self { depth: f64::NAN, normal: DVec3::NAN, status: Status::Miss };
+    const UNFINISHED: Self =
+        Self { depth: f64::NEG_INFINITY, normal: DVec3::ZERO, status: Status::Unfinished };
+}
+
 /// A thread's part of the picture, rows from top to bottom: one tile after the other.
 #[derive(Default)]
 struct Tile {
     workspace: Workspace,
     area: Area,
+    content: Content,
     outcomes: Vec<Outcome>,
     /// The layers that the picture keeps, and the normals it is shaded by.
     color: Vec<[u8; 3]>,
@@ -138,12 +161,12 @@ struct Tile {
 }
 
 impl Tile {
-    /// Whether it was finished before work was stopped.
-    fn render(&mut self, scene: &Scene<'_>, size: Size, area: Area) -> Result<bool, RenderError> {
-        self.area = area;
+    /// Finds out about its pixels, unless work is stopped before that is done.
+    fn render(&mut self, scene: &Scene<'_>, size: Size, area: Area) -> Result<(), RenderError> {
+        (self.area, self.content) = (area, Content::Unfinished);
         let stop = scene.surface.stop();
         if stop.is_requested() {
-            return Ok(false);
+            return Ok(());
         }
         let mut watch = Stopwatch::start();
         let Self { workspace, outcomes, normals: found_normals, .. } = self;
@@ -152,10 +175,12 @@ impl Tile {
         workspace.counters = Counters::default();
         scene.tracer.trace_tile(workspace, rays, outcomes);
         if stop.is_requested() {
-            return Ok(false);
+            return Ok(());
         }
         self.trace = watch.lap();
-        if scene.plan.runs(Pass::Normals) {
+        let is_empty = outcomes.iter().all(|outcome| *outcome == Outcome::Miss);
+        self.content = if is_empty { Content::Nothing } else { Content::Found };
+        if scene.plan.runs(Pass::Normals) && !is_empty {
             found_normals.resize(rays.len(), DVec3::NAN);
             normals(scene.surface, Some(scene.tracer), workspace, rays, outcomes, found_normals)?;
         }
@@ -164,19 +189,7 @@ impl Tile {
         }
         self.note(scene.plan.layers(), rays);
         self.shade = watch.lap();
-        Ok(true)
-    }
-
-    /// Puts the marks of unfinished pixels in all layers.
-    fn mark_unfinished(&mut self, layers: Layers) {
-        let Area { width, height, .. } = self.area;
-        let count = |is_kept: bool| if is_kept { (width * height) as usize } else { 0 };
-        refill(&mut self.color, count(layers.color), Picture::UNFINISHED);
-        refill(&mut self.depth, count(layers.depth), f64::NEG_INFINITY);
-        refill(&mut self.normals, count(layers.normals), DVec3::ZERO);
-        refill(&mut self.points, count(layers.points), DVec3::NAN);
-        refill(&mut self.statuses, count(layers.statuses), Status::Unfinished);
-        refill(&mut self.outcomes, count(layers.outcomes), Outcome::Miss);
+        Ok(())
     }
 
     /// Colours all pixels.
@@ -186,7 +199,7 @@ impl Tile {
         for (line, outcomes) in self.outcomes.chunks_exact(width).enumerate() {
             let background = shading.background(self.area.row + line as u32, size);
             let nothing = srgb_from_color(background);
-            let normals = &self.normals[line * width..];
+            let normals = self.normals.get(line * width..).unwrap_or_default();
             self.color.extend(outcomes.iter().enumerate().map(|(column, outcome)| match outcome {
                 Outcome::Miss => nothing,
                 _ => {
@@ -200,6 +213,12 @@ impl Tile {
     /// Takes from the outcomes what `layers` show.
     fn note(&mut self, layers: Layers, rays: iso_grid::Tile<'_>) {
         let outcomes = &self.outcomes;
+        self.counts = StatusCounts::default();
+        if self.content == Content::Nothing {
+            self.counts.miss = outcomes.len() as u64;
+            return;
+        }
+        outcomes.iter().for_each(|outcome| self.counts.count(Status::from(outcome)));
         let founds = || outcomes.iter().map(found);
         if layers.depth {
             self.depth.clear();
@@ -214,39 +233,60 @@ impl Tile {
             self.statuses.clear();
             self.statuses.extend(outcomes.iter().map(Status::from));
         }
-        self.counts = StatusCounts::default();
-        outcomes.iter().for_each(|outcome| self.counts.count(Status::from(outcome)));
     }
 }
 
 impl Tile {
-    /// Copies the layers to their place in the band that holds the tile.
+    /// Puts the layers in their place in the band that holds the tile.
     fn put(&self, band: &mut Band<'_>, size: Size) {
-        self.put_layer(&self.color, band.color, size);
-        self.put_layer(&self.depth, band.depth, size);
-        self.put_layer(&self.normals, band.normals, size);
-        self.put_layer(&self.points, band.points, size);
-        self.put_layer(&self.statuses, band.statuses, size);
-        self.put_layer(&self.outcomes, band.outcomes, size);
+        match self.content {
+            Content::Unfinished => {
+                self.fill_layer(Picture::UNFINISHED, band.color, size);
+                self.fill(&Mark::UNFINISHED, band, size);
+            }
+            Content::Nothing => {
+                self.put_layer(&self.color, band.color, size);
+                self.fill(&Mark::NOTHING, band, size);
+            }
+            Content::Found => {
+                self.put_layer(&self.color, band.color, size);
+                self.put_layer(&self.depth, band.depth, size);
+                self.put_layer(&self.normals, band.normals, size);
+                self.put_layer(&self.points, band.points, size);
+                self.put_layer(&self.statuses, band.statuses, size);
+                self.put_layer(&self.outcomes, band.outcomes, size);
+            }
+        }
+    }
+
+    /// Fills all layers but that of colours.
+    fn fill(&self, mark: &Mark, band: &mut Band<'_>, size: Size) {
+        self.fill_layer(mark.depth, band.depth, size);
+        self.fill_layer(mark.normal, band.normals, size);
+        self.fill_layer(DVec3::NAN, band.points, size);
+        self.fill_layer(mark.status, band.statuses, size);
+        self.fill_layer(Outcome::Miss, band.outcomes, size);
     }
 
     /// Copies one layer, if the picture keeps it.
     fn put_layer<T: Copy>(&self, pixels: &[T], layer: &mut [T], size: Size) {
-        if layer.is_empty() {
-            return;
-        }
-        let (column, width) = (self.area.column as usize, self.area.width as usize);
-        let rows = layer.chunks_exact_mut(size.width() as usize);
-        for (pixels, row) in pixels.chunks_exact(width).zip(rows) {
-            row[column..][..width].copy_from_slice(pixels);
+        let rows = self.rows(layer, size);
+        for (pixels, row) in pixels.chunks_exact(self.area.width as usize).zip(rows) {
+            row.copy_from_slice(pixels);
         }
     }
-}
 
-/// Puts so many times the same into a buffer.
-fn refill<T: Clone>(buffer: &mut Vec<T>, count: usize, value: T) {
-    buffer.clear();
-    buffer.resize(count, value);
+    /// Fills one layer, if the picture keeps it.
+    fn fill_layer<T: Copy>(&self, pixel: T, layer: &mut [T], size: Size) {
+        self.rows(layer, size).for_each(|row| row.fill(pixel));
+    }
+
+    /// The tile's part of each row of a band's layer; no rows of a layer that is not kept.
+    fn rows<'a, T>(&self, layer: &'a mut [T], size: Size) -> impl Iterator<Item = &'a mut [T]> + use<'a, T> {
+        let (column, width) = (self.area.column as usize, self.area.width as usize);
+        let rows = layer.chunks_exact_mut(size.width() as usize).take(self.area.height as usize);
+        rows.map(move |row| &mut row[column..][..width])
+    }
 }
 
 /// Where on its ray something was found; `None` where nothing was.

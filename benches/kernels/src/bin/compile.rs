@@ -15,8 +15,11 @@ use iso_jit::Jit;
 const TURNS: usize = 9;
 /// Terms of the sums, for growth: each term takes seven operations.
 const TERMS: [usize; 7] = [3, 10, 30, 100, 300, 700, 1_400];
-/// The kernels of one formula, from the point kernel of F to the boxes of what rounding does to it.
-const KERNELS: [&str; 6] = ["point", "batch", "batch+gradient", "boxes", "boxes+gradient", "boxes+rounding"];
+/// Formulas of more operations are not asked for their forms.
+const WITH_FORMS: usize = 100;
+/// The kernels of one formula, from the point kernel of F to the affine forms of F and its gradient.
+const KERNELS: [&str; 7] =
+    ["point", "batch", "batch+gradient", "boxes", "boxes+gradient", "boxes+rounding", "forms"];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let machine = Machine::here();
@@ -46,6 +49,8 @@ fn sum_of_products(terms: usize) -> Result<Program, FormulaError> {
 fn measure(name: &str, value: &Program, results: &mut Results) -> Result<(), Box<dyn Error>> {
     let jit = Jit::new()?;
     let (gradient, rounding) = (value.with_gradient().simplified(), value.with_rounding().simplified());
+    let has_forms = value.has_forms() && value.operations() <= WITH_FORMS;
+    let forms = has_forms.then(|| gradient.with_forms()).flatten();
     let operations = value.operations().to_string();
     let mut all = 0.0;
     print!("{name:<12}{operations:>10}");
@@ -53,6 +58,13 @@ fn measure(name: &str, value: &Program, results: &mut Results) -> Result<(), Box
         let program = match kernel {
             "batch+gradient" | "boxes+gradient" => &gradient,
             "boxes+rounding" => &rounding,
+            "forms" => match &forms {
+                Some(forms) => forms,
+                None => {
+                    print!("{:>16}", "-");
+                    continue;
+                }
+            },
             _ => value,
         };
         let mut milliseconds = Samples::default();
@@ -81,7 +93,7 @@ fn measure(name: &str, value: &Program, results: &mut Results) -> Result<(), Box
 fn compile(jit: &Jit, kernel: &str, program: &Program) -> Result<(), CompileError> {
     match kernel {
         "point" => drop(black_box(jit.point(program)?)),
-        "batch" | "batch+gradient" => drop(black_box(jit.batch(program)?)),
+        "batch" | "batch+gradient" | "forms" => drop(black_box(jit.batch(program)?)),
         _ => drop(black_box(jit.boxes(program)?)),
     }
     Ok(())
