@@ -245,6 +245,17 @@ fn no_tile_contradicts_its_rays_whatever_the_formula() {
     assert!(decided > 500, "{decided} rays hit");
 }
 
+/// Roundings of x hide the constant, unless x is known to cancel before it is rounded.
+#[test]
+fn tiles_know_that_a_tiny_constant_is_not_zero() {
+    let tracer = certified(&read("x - x + 1e-300"), 1.0);
+    for view in views(1.0, 24, 20) {
+        for outcomes in together(&tracer, &view) {
+            assert!(outcomes.iter().all(|outcome| *outcome == Outcome::Miss), "{}", view.name);
+        }
+    }
+}
+
 #[test]
 fn unrelated_rays_may_be_called_a_tile() {
     let tracer = certified(&read("x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8"), 2.6);

@@ -149,8 +149,7 @@ impl Formula {
     fn wear(&self, kernel: Kernel, operations: u64) {
         if self.patience.wear(operations) {
             let surface = self.surface.compiled_for_many_runs();
-            let mut kernels = Kernel::OF_PROOFS.iter().chain(self.has_forms.then_some(&Kernel::Forms));
-            if kernels.all(|kernel| surface.compile(*kernel).is_ok()) {
+            if of_proofs(self.has_forms).all(|kernel| surface.compile(*kernel).is_ok()) {
                 self.compiled.get_or_init(|| Arc::new(surface));
                 self.compile_hessians();
             }
@@ -168,6 +167,11 @@ impl Formula {
             let _ = self.surface().compile(Kernel::HessianEnclosures);
         }
     }
+}
+
+/// The kernels that rays are followed with.
+fn of_proofs(have_forms: bool) -> impl Iterator<Item = &'static Kernel> {
+    Kernel::OF_PROOFS.iter().chain(have_forms.then_some(&Kernel::Forms))
 }
 
 /// F over a box, and its derivatives along the axes.
@@ -188,8 +192,7 @@ impl Kernels {
     /// When the engine cannot compile one.
     pub(super) fn of(surface: &Surface) -> Result<Self, CompileError> {
         let has_forms = Kernel::Forms.pays(surface.program());
-        let mut kernels = Kernel::OF_PROOFS.iter().chain(has_forms.then_some(&Kernel::Forms));
-        kernels.try_for_each(|kernel| surface.compile(*kernel))?;
+        of_proofs(has_forms).try_for_each(|kernel| surface.compile(*kernel))?;
         let may_have_forms = surface.program().operations() <= Kernel::WITH_FORMS;
         let formula = Arc::new(Formula::new(surface.clone(), Patience::endless(), may_have_forms));
         Ok(Self { formula, domain: [Interval::ENTIRE; 3] })

@@ -11,6 +11,9 @@ use crate::batch::Affine;
 /// A few roundings, relative to what is rounded: more than any sum here takes.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
+/// F counts as constant where it changes so many times less than what is not known of it.
+const FLAT: f64 = 8.0;
+
 /// How far slopes are from their middle at most when they are much alike, as part of it.
 const UNEVEN: f64 = 0.6;
 
@@ -212,6 +215,12 @@ impl Form {
     /// Whether F is certainly nowhere zero.
     pub(super) fn excludes_zero(&self) -> bool {
         self.sign().is_some()
+    }
+
+    /// Whether F may have either sign, but hardly because it changes with column, row or t.
+    pub(super) fn is_vague(&self) -> bool {
+        let change = self.across + self.incline.magnitude() * self.length();
+        self.value.middle.abs() <= self.value.radius && FLAT * change <= self.value.radius
     }
 
     /// The sign of F, if it is the same everywhere.

@@ -383,7 +383,10 @@ impl<'a> Subdivision<'a> {
             };
             let Slab { beam, kernels, stretch, reach, is_inside, .. } = slabs[number];
             let form = Form::affine(self.beam(beam), reach, units[number], &found);
-            if !form.excludes_zero() {
+            if form.is_vague() {
+                // Where F is nearly constant, enclosures of its derivatives and its middle take fewer roundings.
+                self.keep_by_gradients(&slabs[number..=number]);
+            } else if !form.excludes_zero() {
                 self.memory.ahead.push(Part { beam, kernels, stretch, form, is_inside });
             }
         }
