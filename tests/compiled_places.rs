@@ -7,8 +7,8 @@ use iso_expr::{Ast, Engine, Interpreter};
 use iso_grid::{Certified, Outcome, Raster, Region, Surface, Tile, Tracer, Workspace};
 use iso_jit::Jit;
 
-/// A quartic inside a ball: in most places one of both decides.
-const FORMULA: &str = "max(x^4 + y^4 + z^4 - x^2 - y^2 - z^2 + 0.3, x^2 + y^2 + z^2 - 1.2)";
+/// A quartic inside a ball: in most places one of both decides. Its last term has no affine form, so that F is enclosed over boxes.
+const FORMULA: &str = "max(x^4 + y^4 + z^4 - x^2 - y^2 - z^2 + 0.3 + 0.01atan(x), x^2 + y^2 + z^2 - 1.2)";
 
 /// Columns and rows of the picture.
 const SIDE: usize = 64;
