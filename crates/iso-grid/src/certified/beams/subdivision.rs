@@ -341,7 +341,7 @@ impl<'a> Subdivision<'a> {
         self.kernels.len() as u32 - 1
     }
 
-    /// Encloses F over slabs that lie where the same kernels hold, and keeps those that may hold roots.
+    /// Keeps those slabs that may hold roots. All lie where the same kernels hold.
     fn keep_open(&mut self, mut slabs: &mut [Slab]) {
         let Some(&Slab { beam, kernels, .. }) = slabs.first() else { return };
         let (area, kernels) = (self.beam(beam).area, self.kernels(kernels));
