@@ -1,10 +1,10 @@
-//! What a formula comes to in some places is compiled after a while, which changes no bit.
+//! What is asked for seldom, and what a formula comes to in some places, is compiled after a while, which changes no bit.
 
 use std::sync::Arc;
 
 use glam::DVec3;
 use iso_expr::{Ast, Engine, Interpreter};
-use iso_grid::{Certified, Outcome, Raster, Region, Surface, Tile, Tracer, Workspace};
+use iso_grid::{Certified, Kernel, Outcome, Raster, Region, Surface, Tile, Tracer, Workspace};
 use iso_jit::Jit;
 
 /// A quartic inside a ball: in most places one of both decides. To the second a term is added that has no affine form, so that it is
@@ -19,11 +19,20 @@ const SIDE: usize = 64;
 /// So many pictures ask often enough for what the formula comes to.
 const PICTURES: usize = 100;
 
-/// The certified method for the surface.
-fn certified(engine: Arc<dyn Engine>, formula: &str) -> Certified {
+fn surface(engine: Arc<dyn Engine>, formula: &str) -> Surface {
     let value = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
+    Surface::new(engine, value)
+}
+
+/// The certified method for a surface.
+fn of_surface(surface: &Surface) -> Certified {
     let region = Region::new(DVec3::splat(-1.3), DVec3::splat(1.3)).unwrap();
-    Certified::new(&Surface::new(engine, value), region).unwrap()
+    Certified::new(surface, region).unwrap()
+}
+
+/// The certified method for the surface of a formula.
+fn certified(engine: Arc<dyn Engine>, formula: &str) -> Certified {
+    of_surface(&surface(engine, formula))
 }
 
 /// How the rays end in so many pictures.
@@ -58,6 +67,22 @@ fn compiled_places_end_rays_as_interpreted_ones_do() {
             assert_eq!(outcomes, interpreted[0], "{formula}");
         }
     }
+}
+
+/// A waist at which F is not monotone, so that what forms say too little of is asked for often.
+const HEART: &str = "(x^2 + 2.25y^2 + z^2 - 1)^3 - x^2 z^3 - 0.1125y^2 z^3";
+
+#[test]
+fn kernels_that_are_asked_for_seldom_are_compiled_when_they_were_asked_for_often() {
+    let surface = surface(Arc::new(Jit::new().unwrap()), HEART);
+    let seldom = [Kernel::GradientEnclosures, Kernel::RoundingBounds];
+    let tracer = of_surface(&surface);
+    let mut workspace = Workspace::default();
+    let first = pictures(&tracer, 1, &mut workspace);
+    assert_eq!(seldom.map(|kernel| surface.is_compiled(kernel)), [false; 2]);
+    let later = pictures(&tracer, PICTURES, &mut workspace);
+    assert_eq!(seldom.map(|kernel| surface.is_compiled(kernel)), [true; 2]);
+    assert!(later.iter().all(|outcomes| *outcomes == first[0]));
 }
 
 #[test]

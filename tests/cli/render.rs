@@ -66,7 +66,7 @@ fn the_report_has_its_keys() {
             ["hit", "touch", "miss", "undecided"].map(|status| json["pixels"][status].as_u64().unwrap());
         assert_eq!(pixels.iter().sum::<u64>(), 48 * 32);
         assert_eq!(json["counters"]["rays"], 48 * 32);
-        let kernels = if method == "certified" { 6 } else { 3 };
+        let kernels = if method == "certified" { 4 } else { 3 };
         assert_eq!(json["plan"]["kernels_compiled"], kernels, "{method}");
     }
 }

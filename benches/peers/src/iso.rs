@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use iso_expr::{Engine, Interpreter, Program};
-use iso_grid::{Certified, GridSettings, Surface, Tracer};
+use iso_grid::{Certified, GridSettings, Kernel, Surface, Tracer};
 use iso_jit::Jit;
 use iso_render::{
     Camera, Layers, Picture, Plan, Projection, Scene, Shading, Smoothing, Status, StatusCounts, Wanted,
@@ -92,9 +92,10 @@ impl Iso {
             Method::Grid => iso_grid::Method::Grid(GridSettings::default()),
         };
         let tracer = method.prepare(&surface, region)?;
-        surface.gradients()?;
-        // Left to the interpreter where it is too large.
-        surface.hessian_enclosures().ok();
+        for kernel in Kernel::ALL.into_iter().filter(|kernel| kernel.pays(program)) {
+            // What is too large to be compiled is left as it is.
+            surface.compile(kernel).ok();
+        }
         let camera = view.camera()?;
         let shading = Shading::new(&camera, false);
         Ok(Self { surface, method, tracer, camera, shading, view, picture: None })

@@ -5,19 +5,16 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use iso_expr::{BatchKernel, BoxKernel, CompileError, Engine, Interval, Program};
 
 use crate::certified::Cells;
-use crate::{Region, Stop};
+use crate::{Kernel, Region, Stop};
 
 /// Differentiating a program takes about so much longer than shortening its derivative on a box.
 const MUCH_SHORTER: usize = 6;
-
-/// Formulas of more operations are not differentiated twice.
-const DIFFERENTIATED_TWICE: usize = 100;
 
 /// The kernels of F − C and of its gradient. Each is compiled when it is first asked for, and F − C is differentiated when
 /// the first that takes its gradient is.
 ///
 /// The surface also keeps which cells of a region are proven to hold nothing of it, so that the certified method proves each
-/// of them once, however many pictures of that region are drawn.
+/// of them once, however many pictures of that region are drawn. Copies share all of this.
 #[derive(Clone)]
 pub struct Surface {
     engine: Arc<dyn Engine>,
@@ -26,92 +23,37 @@ pub struct Surface {
     value: Program,
     /// The surface of which this is what is left on a box.
     outer: Option<(Arc<Surface>, [Interval; 3])>,
-    value_and_gradient: OnceLock<Program>,
-    value_and_rounding: OnceLock<Program>,
-    value_and_hessian: OnceLock<Program>,
-    forms: OnceLock<Program>,
-    value_batch: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
-    gradient_batch: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
-    value_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
-    gradient_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
-    rounding_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
-    hessian_boxes: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
-    form_batch: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
-    hessians_for_few_runs: OnceLock<Arc<dyn BoxKernel>>,
-    /// Shared by copies.
+    programs: Arc<Programs>,
+    kernels: Arc<Compiled>,
     cells: Arc<Mutex<Option<CellsOfRegion>>>,
     stop: Stop,
 }
 
+/// The programs that are made of F − C, when first needed.
+#[derive(Default)]
+struct Programs {
+    gradient: OnceLock<Program>,
+    rounding: OnceLock<Program>,
+    hessian: OnceLock<Program>,
+    forms: OnceLock<Program>,
+}
+
+/// The kernels, compiled when first needed.
+#[derive(Default)]
+struct Compiled {
+    values: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
+    gradients: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
+    value_enclosures: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
+    gradient_enclosures: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
+    rounding_bounds: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
+    hessian_enclosures: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
+    forms: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
+    /// For each kernel over boxes that is not compiled ahead.
+    for_few_runs: [OnceLock<Arc<dyn BoxKernel>>; 7],
+}
+
 /// What is known of the cells of a region.
 type CellsOfRegion = (Region, Arc<Cells>);
-
-/// One of a surface's kernels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kernel {
-    /// F − C at points: [`Surface::values`].
-    Values,
-    /// F − C and its gradient at points: [`Surface::gradients`].
-    Gradients,
-    /// F − C over boxes: [`Surface::value_enclosures`].
-    ValueEnclosures,
-    /// F − C and its gradient over boxes: [`Surface::gradient_enclosures`].
-    GradientEnclosures,
-    /// F − C, what rounding does to it and its gradient over boxes: [`Surface::rounding_bounds`].
-    RoundingBounds,
-    /// F − C with its first and second derivatives over boxes: [`Surface::hessian_enclosures`].
-    HessianEnclosures,
-    /// The affine forms of F − C and its gradient: [`Surface::forms`].
-    Forms,
-}
-
-impl Kernel {
-    /// Those that rays are followed with by the method that proves what it says.
-    pub const OF_PROOFS: &'static [Self] =
-        &[Self::Values, Self::ValueEnclosures, Self::GradientEnclosures, Self::RoundingBounds];
-
-    /// Formulas of more operations have no forms, which take some twenty times as many.
-    pub(crate) const WITH_FORMS: usize = 100;
-
-    /// All kernels.
-    pub const ALL: [Self; 7] = [
-        Self::Values,
-        Self::Gradients,
-        Self::ValueEnclosures,
-        Self::GradientEnclosures,
-        Self::RoundingBounds,
-        Self::HessianEnclosures,
-        Self::Forms,
-    ];
-
-    /// Whether there is such a kernel and it is likely to pay for itself: large formulas are not differentiated twice, for that
-    /// may take nine times as many operations, and have no forms, nor have those that jump.
-    pub fn pays(self, value: &Program) -> bool {
-        match self {
-            Self::HessianEnclosures => value.operations() <= DIFFERENTIATED_TWICE,
-            Self::Forms => value.operations() <= Self::WITH_FORMS && value.has_forms(),
-            _ => true,
-        }
-    }
-
-    /// Whether it is compiled ahead of its use. What is asked for seldom is made for few runs until it was asked for often.
-    pub fn is_compiled_ahead(self) -> bool {
-        self != Self::HessianEnclosures
-    }
-
-    /// The kernel's name in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Values => "values",
-            Self::Gradients => "gradients",
-            Self::ValueEnclosures => "value enclosures",
-            Self::GradientEnclosures => "gradient enclosures",
-            Self::RoundingBounds => "rounding bounds",
-            Self::HessianEnclosures => "hessian enclosures",
-            Self::Forms => "forms",
-        }
-    }
-}
 
 impl Surface {
     /// The surface where the one output of `value` is zero.
@@ -125,18 +67,8 @@ impl Surface {
             many: None,
             value,
             outer: None,
-            value_and_gradient: OnceLock::new(),
-            value_and_rounding: OnceLock::new(),
-            value_and_hessian: OnceLock::new(),
-            forms: OnceLock::new(),
-            value_batch: OnceLock::new(),
-            gradient_batch: OnceLock::new(),
-            value_boxes: OnceLock::new(),
-            gradient_boxes: OnceLock::new(),
-            rounding_boxes: OnceLock::new(),
-            hessian_boxes: OnceLock::new(),
-            form_batch: OnceLock::new(),
-            hessians_for_few_runs: OnceLock::new(),
+            programs: Arc::default(),
+            kernels: Arc::default(),
             cells: Arc::default(),
             stop: Stop::default(),
         }
@@ -184,13 +116,7 @@ impl Surface {
     pub(crate) fn compiled_for_many_runs(&self) -> Self {
         let engine = self.many.as_ref().unwrap_or(&self.engine);
         let surface = Self::new(Arc::clone(engine), self.value.clone()).stopped_by(self.stop.clone());
-        Self {
-            value_and_gradient: self.value_and_gradient.clone(),
-            value_and_rounding: self.value_and_rounding.clone(),
-            value_and_hessian: self.value_and_hessian.clone(),
-            forms: self.forms.clone(),
-            ..surface
-        }
+        Self { programs: Arc::clone(&self.programs), ..surface }
     }
 
     /// The program of F − C.
@@ -206,15 +132,18 @@ impl Surface {
         match kernel {
             Kernel::Values | Kernel::ValueEnclosures => &self.value,
             Kernel::Gradients | Kernel::GradientEnclosures => self
-                .value_and_gradient
+                .programs
+                .gradient
                 .get_or_init(|| self.derived(kernel, || self.value.with_gradient().simplified())),
             Kernel::RoundingBounds => self
-                .value_and_rounding
+                .programs
+                .rounding
                 .get_or_init(|| self.derived(kernel, || self.value.with_rounding().simplified())),
             Kernel::HessianEnclosures => self
-                .value_and_hessian
+                .programs
+                .hessian
                 .get_or_init(|| self.derived(kernel, || self.value.with_hessian().simplified())),
-            Kernel::Forms => self.forms.get_or_init(|| {
+            Kernel::Forms => self.programs.forms.get_or_init(|| {
                 let forms = self.program_of(Kernel::Gradients).with_forms();
                 forms.expect("derivatives of what has forms have forms")
             }),
@@ -237,7 +166,7 @@ impl Surface {
     /// # Errors
     /// When the engine cannot compile it.
     pub fn values(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
-        compiled(&self.value_batch, || self.engine.batch(self.program_of(Kernel::Values)))
+        compiled(&self.kernels.values, || self.engine.batch(self.program_of(Kernel::Values)))
     }
 
     /// F − C and its three derivatives at points.
@@ -245,7 +174,7 @@ impl Surface {
     /// # Errors
     /// When the engine cannot compile it.
     pub fn gradients(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
-        compiled(&self.gradient_batch, || self.engine.batch(self.program_of(Kernel::Gradients)))
+        compiled(&self.kernels.gradients, || self.engine.batch(self.program_of(Kernel::Gradients)))
     }
 
     /// F − C over boxes.
@@ -253,7 +182,9 @@ impl Surface {
     /// # Errors
     /// When the engine cannot compile it.
     pub fn value_enclosures(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
-        compiled(&self.value_boxes, || self.engine.boxes(self.program_of(Kernel::ValueEnclosures)))
+        compiled(&self.kernels.value_enclosures, || {
+            self.engine.boxes(self.program_of(Kernel::ValueEnclosures))
+        })
     }
 
     /// F − C and its three derivatives over boxes.
@@ -261,7 +192,9 @@ impl Surface {
     /// # Errors
     /// When the engine cannot compile it.
     pub fn gradient_enclosures(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
-        compiled(&self.gradient_boxes, || self.engine.boxes(self.program_of(Kernel::GradientEnclosures)))
+        compiled(&self.kernels.gradient_enclosures, || {
+            self.engine.boxes(self.program_of(Kernel::GradientEnclosures))
+        })
     }
 
     /// Compiles a kernel ahead of its use, so that the time it takes is known.
@@ -283,13 +216,13 @@ impl Surface {
     /// Whether a kernel was compiled by now.
     pub fn is_compiled(&self, kernel: Kernel) -> bool {
         match kernel {
-            Kernel::Values => matches!(self.value_batch.get(), Some(Ok(_))),
-            Kernel::Gradients => matches!(self.gradient_batch.get(), Some(Ok(_))),
-            Kernel::ValueEnclosures => matches!(self.value_boxes.get(), Some(Ok(_))),
-            Kernel::GradientEnclosures => matches!(self.gradient_boxes.get(), Some(Ok(_))),
-            Kernel::RoundingBounds => matches!(self.rounding_boxes.get(), Some(Ok(_))),
-            Kernel::HessianEnclosures => matches!(self.hessian_boxes.get(), Some(Ok(_))),
-            Kernel::Forms => matches!(self.form_batch.get(), Some(Ok(_))),
+            Kernel::Values => matches!(self.kernels.values.get(), Some(Ok(_))),
+            Kernel::Gradients => matches!(self.kernels.gradients.get(), Some(Ok(_))),
+            Kernel::ValueEnclosures => matches!(self.kernels.value_enclosures.get(), Some(Ok(_))),
+            Kernel::GradientEnclosures => matches!(self.kernels.gradient_enclosures.get(), Some(Ok(_))),
+            Kernel::RoundingBounds => matches!(self.kernels.rounding_bounds.get(), Some(Ok(_))),
+            Kernel::HessianEnclosures => matches!(self.kernels.hessian_enclosures.get(), Some(Ok(_))),
+            Kernel::Forms => matches!(self.kernels.forms.get(), Some(Ok(_))),
         }
     }
 
@@ -298,15 +231,32 @@ impl Surface {
     /// # Errors
     /// When the engine cannot compile it.
     pub fn rounding_bounds(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
-        compiled(&self.rounding_boxes, || self.engine.boxes(self.program_of(Kernel::RoundingBounds)))
+        compiled(&self.kernels.rounding_bounds, || self.engine.boxes(self.program_of(Kernel::RoundingBounds)))
     }
 
-    /// The same as [`Surface::hessian_enclosures`], made for few runs.
-    pub(crate) fn hessians_for_few_runs(&self) -> &Arc<dyn BoxKernel> {
-        self.hessians_for_few_runs.get_or_init(|| {
-            let kernel = self.engine.for_few_runs().boxes(self.program_of(Kernel::HessianEnclosures));
+    /// A kernel over boxes, made for few runs.
+    pub(crate) fn for_few_runs(&self, kernel: Kernel) -> &Arc<dyn BoxKernel> {
+        self.kernels.for_few_runs[kernel as usize].get_or_init(|| {
+            let kernel = self.engine.for_few_runs().boxes(self.program_of(kernel));
             kernel.expect("an engine for few runs takes any program")
         })
+    }
+
+    /// A kernel over boxes.
+    ///
+    /// # Errors
+    /// When the engine cannot compile it.
+    ///
+    /// # Panics
+    /// When the kernel runs over points.
+    pub(crate) fn over_boxes(&self, kernel: Kernel) -> Result<&Arc<dyn BoxKernel>, CompileError> {
+        match kernel {
+            Kernel::ValueEnclosures => self.value_enclosures(),
+            Kernel::GradientEnclosures => self.gradient_enclosures(),
+            Kernel::RoundingBounds => self.rounding_bounds(),
+            Kernel::HessianEnclosures => self.hessian_enclosures(),
+            Kernel::Values | Kernel::Gradients | Kernel::Forms => unreachable!("they run over points"),
+        }
     }
 
     /// F − C with its [first and second derivatives](Program::with_hessian) over boxes.
@@ -314,7 +264,9 @@ impl Surface {
     /// # Errors
     /// When the engine cannot compile it.
     pub fn hessian_enclosures(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
-        compiled(&self.hessian_boxes, || self.engine.boxes(self.program_of(Kernel::HessianEnclosures)))
+        compiled(&self.kernels.hessian_enclosures, || {
+            self.engine.boxes(self.program_of(Kernel::HessianEnclosures))
+        })
     }
 
     /// The [affine forms](Program::with_forms) of F − C and its three derivatives.
@@ -325,7 +277,7 @@ impl Surface {
     /// # Panics
     /// When there are [none](Program::has_forms).
     pub fn forms(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
-        compiled(&self.form_batch, || self.engine.batch(self.program_of(Kernel::Forms)))
+        compiled(&self.kernels.forms, || self.engine.batch(self.program_of(Kernel::Forms)))
     }
 }
 

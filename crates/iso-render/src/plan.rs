@@ -206,8 +206,9 @@ impl Plan {
 
     /// The kernels that are compiled ahead of their use.
     pub fn compiled_ahead(&self) -> impl Iterator<Item = Kernel> {
-        let taken = self.kernels.iter().filter(|kernel| kernel.taken);
-        taken.map(|kernel| kernel.subject).filter(|kernel| kernel.is_compiled_ahead())
+        let taken = self.kernels.iter().filter(|kernel| kernel.taken).map(|kernel| kernel.subject);
+        let has_forms = taken.clone().any(|kernel| kernel == Kernel::Forms);
+        taken.filter(move |kernel| kernel.is_compiled_ahead(has_forms))
     }
 
     /// Compiles these kernels, so that the time it takes is known.
@@ -277,10 +278,14 @@ impl Wanted<'_> {
             Kernel::ValueEnclosures if certified => (true, "stretches of rays and cells are proven empty"),
             Kernel::ValueEnclosures if !self.box_is_given => (true, "a box is fitted around the surface"),
             Kernel::ValueEnclosures => (false, "the method samples, and the box is given"),
+            Kernel::GradientEnclosures if certified && Kernel::Forms.pays(self.program) => (
+                true,
+                "roots are proven to be simple where forms say too little; compiled when asked for often",
+            ),
             Kernel::GradientEnclosures if certified => (true, "roots are proven to be simple"),
             Kernel::GradientEnclosures => (false, "the method samples"),
             Kernel::RoundingBounds if certified => {
-                (true, "roots found at points are proven by the rounding of F")
+                (true, "roots found at points are proven by the rounding of F; compiled when asked for often")
             }
             Kernel::RoundingBounds => (false, "the method samples"),
             Kernel::HessianEnclosures if certified && !kernel.pays(self.program) => {

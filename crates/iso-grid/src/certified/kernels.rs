@@ -54,8 +54,8 @@ pub(super) struct Formula {
     compiled: OnceLock<Arc<Surface>>,
     /// Before it is compiled.
     patience: Patience,
-    /// Before the kernel of its second derivatives is compiled, which is seldom asked for.
-    patience_for_hessians: Patience,
+    /// Before each kernel is compiled that is not compiled ahead.
+    patience_for: [Patience; 7],
     has_branches: bool,
     /// Whether the formula that this is, or comes from, is small enough for forms.
     may_have_forms: bool,
@@ -130,7 +130,7 @@ impl Formula {
         Self {
             may_have_forms,
             has_forms: may_have_forms && Kernel::Forms.pays(surface.program()),
-            patience_for_hessians: Patience::limited(surface.program()),
+            patience_for: [(); 7].map(|()| Patience::limited(surface.program())),
             surface: Arc::new(surface),
             compiled: OnceLock::new(),
             patience,
@@ -149,29 +149,24 @@ impl Formula {
     fn wear(&self, kernel: Kernel, operations: u64) {
         if self.patience.wear(operations) {
             let surface = self.surface.compiled_for_many_runs();
-            if of_proofs(self.has_forms).all(|kernel| surface.compile(*kernel).is_ok()) {
+            if Kernel::of_proofs(self.has_forms).all(|kernel| surface.compile(kernel).is_ok()) {
                 self.compiled.get_or_init(|| Arc::new(surface));
-                self.compile_hessians();
+                Kernel::ALL.into_iter().for_each(|kernel| self.compile_if_often(kernel));
             }
         }
-        if kernel == Kernel::HessianEnclosures && self.patience_for_hessians.wear(operations) {
-            self.compile_hessians();
+        if !kernel.is_compiled_ahead(self.has_forms) && self.patience_for[kernel as usize].wear(operations) {
+            self.compile_if_often(kernel);
         }
     }
 
-    /// Compiles the kernel of second derivatives if it was asked for often, and all others are compiled.
-    fn compile_hessians(&self) {
+    /// Compiles a kernel that was asked for often, if those are that are compiled ahead.
+    fn compile_if_often(&self, kernel: Kernel) {
         let is_native = self.compiled.get().is_some() || self.patience.is_endless();
-        if is_native && self.patience_for_hessians.is_spent() {
+        if is_native && self.patience_for[kernel as usize].is_spent() {
             // Where it cannot be compiled it stays as it is.
-            let _ = self.surface().compile(Kernel::HessianEnclosures);
+            let _ = self.surface().compile(kernel);
         }
     }
-}
-
-/// The kernels that rays are followed with.
-fn of_proofs(have_forms: bool) -> impl Iterator<Item = &'static Kernel> {
-    Kernel::OF_PROOFS.iter().chain(have_forms.then_some(&Kernel::Forms))
 }
 
 /// F over a box, and its derivatives along the axes.
@@ -192,7 +187,7 @@ impl Kernels {
     /// When the engine cannot compile one.
     pub(super) fn of(surface: &Surface) -> Result<Self, CompileError> {
         let has_forms = Kernel::Forms.pays(surface.program());
-        of_proofs(has_forms).try_for_each(|kernel| surface.compile(*kernel))?;
+        Kernel::of_proofs(has_forms).try_for_each(|kernel| surface.compile(kernel))?;
         let may_have_forms = surface.program().operations() <= Kernel::WITH_FORMS;
         let formula = Arc::new(Formula::new(surface.clone(), Patience::endless(), may_have_forms));
         Ok(Self { formula, domain: [Interval::ENTIRE; 3] })
@@ -291,34 +286,25 @@ impl Kernels {
 
     /// F with its gradient over boxes.
     pub(super) fn gradients(&self) -> &dyn BoxKernel {
-        &**compiled(self.formula.surface().gradient_enclosures())
+        self.made_for(Kernel::GradientEnclosures)
     }
 
-    /// One of the kernels over boxes; `None` for the others, and where it does not pay.
+    /// One of the kernels over boxes; `None` where it does not pay.
     pub(super) fn over_boxes(&self, kernel: Kernel) -> Option<&dyn BoxKernel> {
-        match kernel {
-            Kernel::Values | Kernel::Gradients | Kernel::Forms => None,
-            Kernel::ValueEnclosures => Some(self.values()),
-            Kernel::GradientEnclosures => Some(self.gradients()),
-            Kernel::RoundingBounds => Some(&**compiled(self.formula.surface().rounding_bounds())),
-            Kernel::HessianEnclosures => self.hessians(),
-        }
+        kernel.pays(self.program()).then(|| self.made_for(kernel))
+    }
+
+    /// A kernel over boxes: compiled, or made for few runs as long as it is seldom asked for. Both say the same, bit for bit.
+    fn made_for(&self, kernel: Kernel) -> &dyn BoxKernel {
+        let Formula { has_forms, surface: seldom, .. } = &*self.formula;
+        let surface = self.formula.surface();
+        let native = kernel.is_compiled_ahead(*has_forms) || surface.is_compiled(kernel);
+        &**if native { compiled(surface.over_boxes(kernel)) } else { seldom.for_few_runs(kernel) }
     }
 
     /// The affine forms of F and its gradient, where that pays.
     pub(super) fn forms(&self) -> Option<&dyn BatchKernel> {
         self.formula.has_forms.then(|| &**compiled(self.formula.surface().forms()))
-    }
-
-    /// F with its first and second derivatives over boxes, where that pays.
-    pub(super) fn hessians(&self) -> Option<&dyn BoxKernel> {
-        let kernel = Kernel::HessianEnclosures;
-        if !kernel.pays(self.program()) {
-            return None;
-        }
-        let surface = self.formula.surface();
-        let compiled = surface.is_compiled(kernel).then(|| surface.hessian_enclosures().ok()).flatten();
-        Some(compiled.map_or_else(|| &**self.formula.surface.hessians_for_few_runs(), |kernel| &**kernel))
     }
 
     /// The corners of the box on which they hold.

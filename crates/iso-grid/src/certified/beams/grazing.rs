@@ -85,7 +85,7 @@ impl Subdivision<'_> {
         if !part.form.slope.radius.is_finite() {
             return None;
         }
-        self.kernels(part.kernels).hessians()?;
+        self.kernels(part.kernels).over_boxes(Kernel::HessianEnclosures)?;
         let (t, center) = self.center(part);
         let jet = self.jet_at(center, part.kernels)?;
         self.expand(part, (t, center), jet, part.kernels)

@@ -1,0 +1,84 @@
+//! What is computed of a surface, and when that is worth compiling.
+
+use iso_expr::Program;
+
+/// Formulas of more operations are not differentiated twice.
+const DIFFERENTIATED_TWICE: usize = 100;
+
+/// One of a surface's kernels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    /// F − C at points: [`Surface::values`](crate::Surface::values).
+    Values,
+    /// F − C and its gradient at points: [`Surface::gradients`](crate::Surface::gradients).
+    Gradients,
+    /// F − C over boxes: [`Surface::value_enclosures`](crate::Surface::value_enclosures).
+    ValueEnclosures,
+    /// F − C and its gradient over boxes: [`Surface::gradient_enclosures`](crate::Surface::gradient_enclosures).
+    GradientEnclosures,
+    /// F − C, what rounding does to it and its gradient over boxes: [`Surface::rounding_bounds`](crate::Surface::rounding_bounds).
+    RoundingBounds,
+    /// F − C with its first and second derivatives over boxes: [`Surface::hessian_enclosures`](crate::Surface::hessian_enclosures).
+    HessianEnclosures,
+    /// The affine forms of F − C and its gradient: [`Surface::forms`](crate::Surface::forms).
+    Forms,
+}
+
+impl Kernel {
+    /// Formulas of more operations have no forms, which take some twenty times as many.
+    pub(crate) const WITH_FORMS: usize = 100;
+
+    /// All kernels.
+    pub const ALL: [Self; 7] = [
+        Self::Values,
+        Self::Gradients,
+        Self::ValueEnclosures,
+        Self::GradientEnclosures,
+        Self::RoundingBounds,
+        Self::HessianEnclosures,
+        Self::Forms,
+    ];
+
+    /// Whether there is such a kernel and it is likely to pay for itself: large formulas are not differentiated twice, for that
+    /// may take nine times as many operations, and have no forms, nor have those that jump.
+    pub fn pays(self, value: &Program) -> bool {
+        match self {
+            Self::HessianEnclosures => value.operations() <= DIFFERENTIATED_TWICE,
+            Self::Forms => value.operations() <= Self::WITH_FORMS && value.has_forms(),
+            _ => true,
+        }
+    }
+
+    /// Whether it is compiled ahead of its use. What is asked for seldom is made for few runs until it was asked for often: for many
+    /// pictures that is never. Where there are forms, enclosures of the gradient are asked for only where those say too little.
+    pub fn is_compiled_ahead(self, has_forms: bool) -> bool {
+        match self {
+            Self::GradientEnclosures => !has_forms,
+            Self::RoundingBounds | Self::HessianEnclosures => false,
+            _ => true,
+        }
+    }
+
+    /// Those that the method that proves what it says compiles ahead.
+    pub(crate) fn of_proofs(has_forms: bool) -> impl Iterator<Item = Self> {
+        let of_proofs = move |kernel: &Self| match kernel {
+            Self::Gradients => false,
+            Self::Forms => has_forms,
+            kernel => kernel.is_compiled_ahead(has_forms),
+        };
+        Self::ALL.into_iter().filter(of_proofs)
+    }
+
+    /// The kernel's name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Values => "values",
+            Self::Gradients => "gradients",
+            Self::ValueEnclosures => "value enclosures",
+            Self::GradientEnclosures => "gradient enclosures",
+            Self::RoundingBounds => "rounding bounds",
+            Self::HessianEnclosures => "hessian enclosures",
+            Self::Forms => "forms",
+        }
+    }
+}
