@@ -74,10 +74,6 @@ impl PointBatch {
     }
 }
 
-/// How many arguments forms of a program take, and how many outputs those of F and its gradient have.
-const ARGUMENTS: usize = 3 * Program::FORM;
-const OUTPUTS: usize = 4 * Program::FORM;
-
 /// An affine form: the numbers middle + ∑ slopeᵢ·eᵢ + r for the same eᵢ from −1 to 1, and |r| ≤ rest. Nothing is known where a part is
 /// not finite.
 #[derive(Clone, Copy, Debug)]
@@ -89,15 +85,16 @@ pub(crate) struct Affine {
 
 impl Affine {
     #[inline]
-    fn of(&[middle, a, b, c, rest]: &[f64; Program::FORM]) -> Self {
+    fn of([middle, a, b, c, rest]: [f64; Program::FORM]) -> Self {
         Self { middle, slopes: DVec3::new(a, b, c), rest }
     }
 }
 
-/// Sets of points, each by the affine forms of x, y and z, and what a kernel says of F and its gradient there.
+/// Sets of points, each by the affine forms of x, y and z, and what a kernel says of F and its derivatives there.
 #[derive(Debug, Default)]
 pub(crate) struct FormBatch {
-    arguments: [Vec<f64>; ARGUMENTS],
+    arguments: [Vec<f64>; 3 * Program::FORM],
+    direction: [Vec<f64>; 3],
     found: Vec<f64>,
 }
 
@@ -121,25 +118,41 @@ impl FormBatch {
         self.arguments[0].len()
     }
 
-    /// Finds the forms of F and its gradient by their kernel.
-    pub(crate) fn evaluate(&mut self, kernel: &dyn BatchKernel, scratch: &mut Scratch) {
-        self.found.resize(OUTPUTS * self.len(), f64::NAN);
-        if self.len() > 0 {
-            kernel.evaluate(scratch, &self.arguments.each_ref().map(Vec::as_slice), &mut self.found);
+    /// Finds so many forms of F and its derivatives by their kernel, which takes the direction of all rays if there is one.
+    pub(crate) fn evaluate(
+        &mut self,
+        kernel: &dyn BatchKernel,
+        direction: Option<DVec3>,
+        outputs: usize,
+        scratch: &mut Scratch,
+    ) {
+        let count = self.len();
+        self.found.resize(outputs * Program::FORM * count, f64::NAN);
+        if count == 0 {
+            return;
         }
+        for (component, axis) in self.direction.iter_mut().zip(0..3) {
+            component.clear();
+            component.resize(count, direction.map_or(0.0, |direction| direction[axis]));
+        }
+        let all: [&[f64]; Program::MOST_ARGUMENTS] =
+            std::array::from_fn(|place| match self.arguments.get(place) {
+                Some(argument) => &argument[..],
+                None => &self.direction[place - self.arguments.len()],
+            });
+        let taken = if direction.is_some() { all.len() } else { self.arguments.len() };
+        kernel.evaluate(scratch, &all[..taken], &mut self.found);
     }
 
-    /// The forms of F and its gradient on a set of points; `None` where nothing is known.
-    pub(crate) fn found(&self, number: usize) -> Option<[Affine; 4]> {
-        let mut parts = [0.0; OUTPUTS];
-        for (part, found) in parts.iter_mut().zip(self.found[number..].iter().step_by(self.len())) {
-            *part = *found;
-        }
-        let forms: &[[f64; Program::FORM]; 4] = parts.as_chunks().0.try_into().expect("four forms");
-        let [value, x, y, z] = forms;
+    /// The forms of F and its derivatives on a set of points; `None` where nothing is known.
+    pub(crate) fn found<const N: usize>(&self, number: usize) -> Option<[Affine; N]> {
+        let count = self.len();
+        let part = |form: usize, part: usize| self.found[(Program::FORM * form + part) * count + number];
+        let forms: [[f64; Program::FORM]; N] =
+            std::array::from_fn(|form| std::array::from_fn(|place| part(form, place)));
         // Whatever is not finite is not finite in the sum either.
-        let is_known = parts.iter().map(|part| part.abs()).sum::<f64>().is_finite();
-        is_known.then(|| [Affine::of(value), Affine::of(x), Affine::of(y), Affine::of(z)])
+        let is_known = forms.as_flattened().iter().map(|part| part.abs()).sum::<f64>().is_finite();
+        is_known.then(|| forms.map(Affine::of))
     }
 }
 

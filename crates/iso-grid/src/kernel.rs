@@ -22,6 +22,8 @@ pub enum Kernel {
     HessianEnclosures,
     /// The affine forms of F − C and its gradient: [`Surface::forms`](crate::Surface::forms).
     Forms,
+    /// The affine forms of F − C and its slope along parallel rays: [`Surface::parallel_forms`](crate::Surface::parallel_forms).
+    ParallelForms,
 }
 
 impl Kernel {
@@ -29,7 +31,7 @@ impl Kernel {
     pub(crate) const WITH_FORMS: usize = 100;
 
     /// All kernels.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Values,
         Self::Gradients,
         Self::ValueEnclosures,
@@ -37,6 +39,7 @@ impl Kernel {
         Self::RoundingBounds,
         Self::HessianEnclosures,
         Self::Forms,
+        Self::ParallelForms,
     ];
 
     /// Whether there is such a kernel and it is likely to pay for itself: large formulas are not differentiated twice, for that
@@ -44,7 +47,7 @@ impl Kernel {
     pub fn pays(self, value: &Program) -> bool {
         match self {
             Self::HessianEnclosures => value.operations() <= DIFFERENTIATED_TWICE,
-            Self::Forms => value.operations() <= Self::WITH_FORMS && value.has_forms(),
+            Self::Forms | Self::ParallelForms => value.operations() <= Self::WITH_FORMS && value.has_forms(),
             _ => true,
         }
     }
@@ -59,14 +62,10 @@ impl Kernel {
         }
     }
 
-    /// Those that the method that proves what it says compiles ahead.
+    /// Those that the method that proves what it says compiles ahead, whatever the rays. Forms depend on how rays spread.
     pub(crate) fn of_proofs(has_forms: bool) -> impl Iterator<Item = Self> {
-        let of_proofs = move |kernel: &Self| match kernel {
-            Self::Gradients => false,
-            Self::Forms => has_forms,
-            kernel => kernel.is_compiled_ahead(has_forms),
-        };
-        Self::ALL.into_iter().filter(of_proofs)
+        let all = [Self::Values, Self::ValueEnclosures, Self::GradientEnclosures];
+        all.into_iter().filter(move |kernel| kernel.is_compiled_ahead(has_forms))
     }
 
     /// The kernel's name in reports.
@@ -79,6 +78,7 @@ impl Kernel {
             Self::RoundingBounds => "rounding bounds",
             Self::HessianEnclosures => "hessian enclosures",
             Self::Forms => "forms",
+            Self::ParallelForms => "parallel forms",
         }
     }
 }

@@ -138,6 +138,14 @@ impl<'a> Tile<'a> {
         Self { rays: Rays::Listed(rays), width, height: rays.len().checked_div(width).unwrap_or(0) }
     }
 
+    /// The direction of all rays, if they are parallel.
+    pub(crate) fn direction(&self) -> Option<DVec3> {
+        match self.rays {
+            Rays::Raster { raster: Raster::Parallel { direction, .. }, .. } => Some(*direction),
+            _ => None,
+        }
+    }
+
     /// How many columns there are.
     pub fn width(&self) -> usize {
         self.width

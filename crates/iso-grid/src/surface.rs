@@ -36,6 +36,7 @@ struct Programs {
     rounding: OnceLock<Program>,
     hessian: OnceLock<Program>,
     forms: OnceLock<Program>,
+    parallel_forms: OnceLock<Program>,
 }
 
 /// The kernels, compiled when first needed.
@@ -48,8 +49,9 @@ struct Compiled {
     rounding_bounds: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     hessian_enclosures: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
     forms: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
+    parallel_forms: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
     /// For each kernel over boxes that is not compiled ahead.
-    for_few_runs: [OnceLock<Arc<dyn BoxKernel>>; 7],
+    for_few_runs: [OnceLock<Arc<dyn BoxKernel>>; Kernel::ALL.len()],
 }
 
 /// What is known of the cells of a region.
@@ -147,6 +149,10 @@ impl Surface {
                 let forms = self.program_of(Kernel::Gradients).with_forms();
                 forms.expect("derivatives of what has forms have forms")
             }),
+            Kernel::ParallelForms => self.programs.parallel_forms.get_or_init(|| {
+                let forms = self.value.with_slope().simplified().with_forms();
+                forms.expect("derivatives of what has forms have forms")
+            }),
         }
     }
 
@@ -210,6 +216,7 @@ impl Surface {
             Kernel::RoundingBounds => self.rounding_bounds().map(drop),
             Kernel::HessianEnclosures => self.hessian_enclosures().map(drop),
             Kernel::Forms => self.forms().map(drop),
+            Kernel::ParallelForms => self.parallel_forms().map(drop),
         }
     }
 
@@ -223,6 +230,7 @@ impl Surface {
             Kernel::RoundingBounds => matches!(self.kernels.rounding_bounds.get(), Some(Ok(_))),
             Kernel::HessianEnclosures => matches!(self.kernels.hessian_enclosures.get(), Some(Ok(_))),
             Kernel::Forms => matches!(self.kernels.forms.get(), Some(Ok(_))),
+            Kernel::ParallelForms => matches!(self.kernels.parallel_forms.get(), Some(Ok(_))),
         }
     }
 
@@ -255,7 +263,9 @@ impl Surface {
             Kernel::GradientEnclosures => self.gradient_enclosures(),
             Kernel::RoundingBounds => self.rounding_bounds(),
             Kernel::HessianEnclosures => self.hessian_enclosures(),
-            Kernel::Values | Kernel::Gradients | Kernel::Forms => unreachable!("they run over points"),
+            Kernel::Values | Kernel::Gradients | Kernel::Forms | Kernel::ParallelForms => {
+                unreachable!("they run over points")
+            }
         }
     }
 
@@ -269,15 +279,33 @@ impl Surface {
         })
     }
 
-    /// The [affine forms](Program::with_forms) of F − C and its three derivatives.
+    /// The [affine forms](Program::with_forms) of F − C and its three derivatives, made for few runs where that kernel is too large to be
+    /// compiled.
     ///
     /// # Errors
-    /// When the engine cannot compile it.
+    /// When the engine cannot do that either.
     ///
     /// # Panics
     /// When there are [none](Program::has_forms).
     pub fn forms(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
-        compiled(&self.kernels.forms, || self.engine.batch(self.program_of(Kernel::Forms)))
+        compiled(&self.kernels.forms, || self.batch_of_any_size(Kernel::Forms))
+    }
+
+    /// The [affine forms](Program::with_forms) of F − C and its [slope](Program::with_slope), made for few runs where that kernel is too
+    /// large to be compiled.
+    ///
+    /// # Errors
+    /// When the engine cannot do that either.
+    ///
+    /// # Panics
+    /// When there are [none](Program::has_forms).
+    pub fn parallel_forms(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
+        compiled(&self.kernels.parallel_forms, || self.batch_of_any_size(Kernel::ParallelForms))
+    }
+
+    fn batch_of_any_size(&self, kernel: Kernel) -> Result<Arc<dyn BatchKernel>, CompileError> {
+        let program = self.program_of(kernel);
+        self.engine.batch(program).or_else(|_| self.engine.for_few_runs().batch(program))
     }
 }
 

@@ -28,9 +28,6 @@ const WIDEST: usize = PAIR * MOST_PAIRS;
 /// compile.
 const LARGEST_SIDE_BY_SIDE: usize = 400;
 
-/// The most arguments: those of [forms](Program::with_forms).
-const MOST_ARGUMENTS: usize = 3 * Program::FORM;
-
 /// Where each argument of `count` points stands, where the outputs go, and `count`, which is not less than the points of one round.
 type Evaluate = unsafe extern "C" fn(*const *const f64, *mut f64, usize);
 
@@ -46,13 +43,13 @@ impl NativeBatch {
     pub(crate) fn new(blueprint: &BatchBlueprint<'_>, compiled: Compiled<Evaluate>) -> Self {
         let program = blueprint.program;
         let (arguments, outputs) = (program.arguments(), program.outputs().len());
-        assert!(arguments <= MOST_ARGUMENTS, "no program takes more arguments than forms do");
+        assert!(arguments <= Program::MOST_ARGUMENTS, "no program takes more arguments");
         Self { compiled, arguments, outputs, width: blueprint.width() }
     }
 
     /// Evaluates fewer points than one round has, but some: the last one is repeated to fill the round.
     fn evaluate_few(&self, scratch: &mut Scratch, arguments: &[&[f64]], count: usize, values: &mut [f64]) {
-        let mut padded = [[0.0; WIDEST]; MOST_ARGUMENTS];
+        let mut padded = [[0.0; WIDEST]; Program::MOST_ARGUMENTS];
         for (padded, argument) in padded.iter_mut().zip(arguments) {
             *padded = std::array::from_fn(|place| argument[place.min(count - 1)]);
         }
@@ -73,7 +70,7 @@ impl BatchKernel for NativeBatch {
         assert_eq!(values.len(), self.outputs * count, "room for every output at every point");
         let arguments = &arguments[..self.arguments];
         if count >= self.width {
-            let mut addresses = [std::ptr::null(); MOST_ARGUMENTS];
+            let mut addresses = [std::ptr::null(); Program::MOST_ARGUMENTS];
             for (address, argument) in addresses.iter_mut().zip(arguments) {
                 *address = argument.as_ptr();
             }

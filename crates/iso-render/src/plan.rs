@@ -31,7 +31,7 @@ pub struct Plan {
     layers: Layers,
     arguments: [Decision<Axis>; 3],
     constants: [Decision<Given>; 4],
-    kernels: [Decision<Kernel>; 7],
+    kernels: [Decision<Kernel>; Kernel::ALL.len()],
     passes: [Decision<Pass>; 6],
     buffers: [Decision<Buffer>; 6],
 }
@@ -207,7 +207,7 @@ impl Plan {
     /// The kernels that are compiled ahead of their use.
     pub fn compiled_ahead(&self) -> impl Iterator<Item = Kernel> {
         let taken = self.kernels.iter().filter(|kernel| kernel.taken).map(|kernel| kernel.subject);
-        let has_forms = taken.clone().any(|kernel| kernel == Kernel::Forms);
+        let has_forms = taken.clone().any(|kernel| matches!(kernel, Kernel::Forms | Kernel::ParallelForms));
         taken.filter(move |kernel| kernel.is_compiled_ahead(has_forms))
     }
 
@@ -236,6 +236,10 @@ fn decide<T>(subject: T, (taken, reason): Verdict) -> Decision<T> {
 }
 
 impl Wanted<'_> {
+    fn is_parallel(&self) -> bool {
+        matches!(self.projection, Some(Projection::Orthographic { .. }))
+    }
+
     fn argument(&self, axis: Axis) -> Verdict {
         match (self.program.takes(axis), self.method) {
             (true, _) => (true, "F depends on it"),
@@ -253,12 +257,13 @@ impl Wanted<'_> {
                 (true, "their values are folded while simplifying")
             }
             (Given::Parameters, _) => (false, "the formula has none"),
-            (Given::Direction, Some(Projection::Orthographic { .. })) => (
-                false,
-                "all rays share one, set up once; kernels take points, so another view compiles nothing",
+            (Given::Direction, _) if !self.is_parallel() => (false, "each ray has its own"),
+            (Given::Direction, _) if self.kernel(Kernel::ParallelForms).0 => (
+                true,
+                "F is differentiated along it, once instead of three times; a number that forms take, so another view compiles nothing",
             ),
-            (Given::Direction, Some(Projection::Perspective { .. }) | None) => {
-                (false, "each ray has its own")
+            (Given::Direction, _) => {
+                (false, "all rays share one; kernels take points, so another view compiles nothing")
             }
             (Given::Position, _) => (false, "kernels take points, so another view compiles nothing"),
         }
@@ -296,13 +301,15 @@ impl Wanted<'_> {
                 "where F bends one way, rays that graze the surface are decided together; compiled when asked for often",
             ),
             Kernel::HessianEnclosures => (false, "the method samples"),
-            Kernel::Forms if certified && !kernel.pays(self.program) => {
+            Kernel::Forms | Kernel::ParallelForms if !certified => (false, "the method samples"),
+            Kernel::Forms | Kernel::ParallelForms if !kernel.pays(self.program) => {
                 (false, "F is too large or has jumps, or functions without forms")
             }
-            Kernel::Forms if certified => {
+            Kernel::Forms if self.is_parallel() => (false, "all rays have one direction"),
+            Kernel::ParallelForms if !self.is_parallel() => (false, "each ray has its own direction"),
+            Kernel::Forms | Kernel::ParallelForms => {
                 (true, "slopes of F over beams are narrowed by what they have in common")
             }
-            Kernel::Forms => (false, "the method samples"),
         }
     }
 

@@ -162,16 +162,28 @@ fn boxes_are_fitted_and_pixels_averaged_only_when_asked_for() {
     assert!(planned(&fitting).contains(&Kernel::ValueEnclosures));
 }
 
-/// Nothing of the camera is a constant of a kernel: another view compiles nothing.
+/// Of the camera, kernels know at most whether its rays are parallel. Then the certified method takes slopes along their direction alone, by
+/// fewer operations.
 #[test]
-fn another_view_takes_the_same_kernels() {
-    let program = program(PAPER);
+fn parallel_rays_take_slopes_along_their_direction() {
+    let program = program("1/(x^2 + y^2 + z^2) + 1/((x - 1)^2 + y^2 + z^2) = 4");
+    let surface = Surface::new(Arc::new(Interpreter), program.clone());
     for method in methods() {
         let parallel = Plan::new(&wanted(&program, method, ALL));
         let spreading =
             Plan::new(&Wanted { projection: Some(Projection::DEFAULT), ..wanted(&program, method, ALL) });
-        assert_eq!(planned(&parallel), planned(&spreading));
-        assert_eq!(folded(&parallel), [Given::Level]);
+        assert_eq!(folded(&spreading), [Given::Level]);
+        let [parallel_kernels, spreading_kernels] = [&parallel, &spreading].map(planned);
+        if method == Method::CERTIFIED {
+            assert_eq!(folded(&parallel), [Given::Level, Given::Direction]);
+            let [shared @ .., forms] = &parallel_kernels[..] else { panic!("there are kernels") };
+            let [also_shared @ .., others] = &spreading_kernels[..] else { panic!("there are kernels") };
+            assert_eq!((shared, *forms, *others), (also_shared, Kernel::ParallelForms, Kernel::Forms));
+            let [few, many] = [*forms, *others].map(|kernel| surface.program_of(kernel).operations());
+            assert!(5 * few < 4 * many, "{few} operations, {many} with the gradient");
+        } else {
+            assert_eq!((parallel_kernels, folded(&parallel)), (spreading_kernels, vec![Given::Level]));
+        }
     }
 }
 
@@ -179,7 +191,7 @@ fn another_view_takes_the_same_kernels() {
 fn parameters_are_folded_where_there_are_some() {
     let program = program(PAPER);
     let plain = wanted(&program, Method::CERTIFIED, ALL);
-    assert_eq!(folded(&Plan::new(&plain)), [Given::Level]);
+    assert_eq!(folded(&Plan::new(&plain)), [Given::Level, Given::Direction]);
     let with_parameters = Plan::new(&Wanted { has_parameters: true, ..plain });
-    assert_eq!(folded(&with_parameters), [Given::Level, Given::Parameters]);
+    assert_eq!(folded(&with_parameters), [Given::Level, Given::Parameters, Given::Direction]);
 }

@@ -1,6 +1,6 @@
 //! Differentiation: the chain rule, applied node by node.
 
-use super::{Axis, NodeId, Program};
+use super::{Argument, Axis, NodeId, Program};
 use crate::Node;
 use crate::operation::Chain;
 
@@ -14,9 +14,24 @@ impl Program {
     /// When the program has not just one output.
     pub fn with_gradient(&self) -> Self {
         assert_eq!(self.outputs.len(), 1, "one function is differentiated at a time");
-        let Derivatives { mut program, values, gradients } = self.differentiated();
+        let Derivatives { mut program, values, gradients } = self.differentiated(along_axes);
         let gradient = gradients[0].map(|slope| slope.unwrap_or_else(|| program.literal(0.0)));
         program.outputs = values.into_iter().chain(gradient).collect();
+        program.pruned()
+    }
+
+    /// The program that computes this one's only output F, then its derivative along a direction, whose components are three more
+    /// arguments: what the gradient times the direction comes to, by fewer operations.
+    ///
+    /// # Panics
+    /// When the program has not just one output.
+    pub fn with_slope(&self) -> Self {
+        assert_eq!(self.outputs.len(), 1, "one function is differentiated at a time");
+        let directions = Axis::ALL.map(|axis| Node::Variable(Argument::of_direction(axis)));
+        let Derivatives { mut program, values, gradients } =
+            self.differentiated(|program, argument| [program.intern(directions[argument.index()])].map(Some));
+        let [slope] = gradients[0].map(|slope| slope.unwrap_or_else(|| program.literal(0.0)));
+        program.outputs = vec![values[0], slope];
         program.pruned()
     }
 
@@ -27,7 +42,7 @@ impl Program {
     /// When the program has not just one output.
     pub fn with_hessian(&self) -> Self {
         let gradient = self.with_gradient().simplified();
-        let Derivatives { mut program, values, gradients } = gradient.differentiated();
+        let Derivatives { mut program, values, gradients } = gradient.differentiated(along_axes);
         let [_, [xx, xy, xz], [_, yy, yz], [.., zz]] = gradients[..] else {
             unreachable!("F and its gradient are four outputs")
         };
@@ -36,26 +51,28 @@ impl Program {
         program.pruned()
     }
 
-    /// A copy of this program with the derivatives of its outputs.
-    fn differentiated(&self) -> Derivatives {
+    /// A copy of this program with derivatives of its outputs. `of_argument` gives those of an argument of F.
+    fn differentiated<const N: usize>(
+        &self,
+        of_argument: impl Fn(&mut Self, Argument) -> [Option<NodeId>; N],
+    ) -> Derivatives<N> {
         let mut program = Self::new();
         // For each node of this program, in the same order.
         let mut places: Vec<NodeId> = Vec::with_capacity(self.nodes.len());
-        let mut gradients: Vec<[Option<NodeId>; 3]> = Vec::with_capacity(self.nodes.len());
+        let mut gradients: Vec<[Option<NodeId>; N]> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
             let copy = node.with_operands(|operand| places[operand.index()]);
             let place = program.intern(copy);
             gradients.push(match (node, copy) {
-                (Node::Constant(_), _) => [None; 3],
-                (Node::Variable(along), _) => {
-                    let one = program.literal(1.0);
-                    Axis::ALL.map(|axis| (*along == axis.into()).then_some(one))
+                (Node::Constant(_), _) => [None; N],
+                (Node::Variable(argument), _) => of_argument(&mut program, *argument),
+                (Node::Apply(operation, originals), Node::Apply(_, operands)) => {
+                    std::array::from_fn(|along| {
+                        let derivatives = originals.map(|operand| gradients[operand.index()][along]);
+                        let mut chain = Chain { program: &mut program, operands, derivatives, result: place };
+                        derivatives.iter().any(Option::is_some).then(|| operation.derivative(&mut chain))?
+                    })
                 }
-                (Node::Apply(operation, originals), Node::Apply(_, operands)) => Axis::ALL.map(|axis| {
-                    let derivatives = originals.map(|operand| gradients[operand.index()][axis as usize]);
-                    let mut chain = Chain { program: &mut program, operands, derivatives, result: place };
-                    derivatives.iter().any(Option::is_some).then(|| operation.derivative(&mut chain))?
-                }),
                 (Node::Apply(..), _) => unreachable!("a copy applies the same operation"),
             });
             places.push(place);
@@ -68,11 +85,17 @@ impl Program {
     }
 }
 
+/// The derivatives of an argument along x, y and z.
+fn along_axes(program: &mut Program, argument: Argument) -> [Option<NodeId>; 3] {
+    let one = program.literal(1.0);
+    Axis::ALL.map(|axis| (argument == axis.into()).then_some(one))
+}
+
 /// A program with nodes for the derivatives of what it computes, its outputs yet to be named.
-struct Derivatives {
+struct Derivatives<const N: usize> {
     program: Program,
     /// What is differentiated.
     values: Vec<NodeId>,
-    /// The derivatives of each along x, y and z; `None` where they are zero everywhere.
-    gradients: Vec<[Option<NodeId>; 3]>,
+    /// The derivatives of each, along as many directions; `None` where they are zero everywhere.
+    gradients: Vec<[Option<NodeId>; N]>,
 }

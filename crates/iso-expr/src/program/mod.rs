@@ -47,12 +47,17 @@ impl Axis {
     }
 }
 
-/// An argument of a program, by number. Those of F are x, y and z, with the numbers 0, 1 and 2; [forms](Program::with_forms) take
-/// more.
+/// An argument of a program, by number. Those of F are x, y and z, with the numbers 0, 1 and 2; [slopes](Program::with_slope) and
+/// [forms](Program::with_forms) take more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Argument(u8);
 
 impl Argument {
+    /// The component along `axis` of the direction that [slopes](Program::with_slope) are taken along.
+    const fn of_direction(axis: Axis) -> Self {
+        Self(3 + axis as u8)
+    }
+
     /// Its number.
     pub const fn index(self) -> usize {
         self.0 as usize

@@ -66,8 +66,8 @@ pub(super) const ARITHMETIC: [Operation; 10] = [
     Operation::Maximum,
 ];
 
-/// The program's output at `point`, nearly exactly.
-pub(super) fn exact(program: &Program, point: [f64; 3]) -> Twofold {
+/// The program's outputs at `point`, nearly exactly.
+pub(super) fn exact(program: &Program, point: [f64; 3]) -> Vec<Twofold> {
     let mut values: Vec<Twofold> = Vec::new();
     for node in program.nodes() {
         let value = match node {
@@ -94,5 +94,5 @@ pub(super) fn exact(program: &Program, point: [f64; 3]) -> Twofold {
         };
         values.push(value);
     }
-    values[program.outputs()[0].index()]
+    program.outputs().iter().map(|output| values[output.index()]).collect()
 }

@@ -55,14 +55,14 @@ pub(super) struct Formula {
     /// Before it is compiled.
     patience: Patience,
     /// Before each kernel is compiled that is not compiled ahead.
-    patience_for: [Patience; 7],
+    patience_for: [Patience; Kernel::ALL.len()],
     has_branches: bool,
     /// Whether the formula that this is, or comes from, is small enough for forms.
     may_have_forms: bool,
     /// Whether its forms are asked for. That depends on the formula alone, so that all engines prove the same.
     has_forms: bool,
     /// How many operations each kernel takes, counted when first asked for.
-    operations: [OnceLock<u64>; 7],
+    operations: [OnceLock<u64>; Kernel::ALL.len()],
     /// Those of which it is the least or the greatest everywhere, found when first asked for; `None` when it is no such thing.
     faces: OnceLock<Option<(Extreme, Vec<Arc<Formula>>)>>,
 }
@@ -130,7 +130,7 @@ impl Formula {
         Self {
             may_have_forms,
             has_forms: may_have_forms && Kernel::Forms.pays(surface.program()),
-            patience_for: [(); 7].map(|()| Patience::limited(surface.program())),
+            patience_for: Kernel::ALL.map(|_| Patience::limited(surface.program())),
             surface: Arc::new(surface),
             compiled: OnceLock::new(),
             patience,
@@ -302,9 +302,14 @@ impl Kernels {
         &**if native { compiled(surface.over_boxes(kernel)) } else { seldom.for_few_runs(kernel) }
     }
 
-    /// The affine forms of F and its gradient, where that pays.
-    pub(super) fn forms(&self) -> Option<&dyn BatchKernel> {
-        self.formula.has_forms.then(|| &**compiled(self.formula.surface().forms()))
+    /// The affine forms of F and its derivatives, by one of the kernels of forms, where that pays.
+    pub(super) fn forms(&self, kernel: Kernel) -> Option<&dyn BatchKernel> {
+        let surface = self.formula.surface();
+        let forms = || match kernel {
+            Kernel::ParallelForms => surface.parallel_forms(),
+            _ => surface.forms(),
+        };
+        self.formula.has_forms.then(|| &**compiled(forms()))
     }
 
     /// The corners of the box on which they hold.

@@ -29,8 +29,12 @@ impl Program {
     /// How many numbers a form is: its middle, three slopes and its rest.
     pub const FORM: usize = PARTS;
 
+    /// The most arguments that a program takes: three forms and a direction.
+    pub const MOST_ARGUMENTS: usize = 3 * PARTS + 3;
+
     /// The program of the forms of this one's outputs, each of [`Program::FORM`] outputs. Its arguments are the forms of x, y and z,
-    /// one after the other. `None` where it takes an operation that has no form.
+    /// one after the other, and behind them the components of a direction, if this one [takes](Program::with_slope) them: they are
+    /// numbers and the same everywhere. `None` where it takes an operation that has no form.
     ///
     /// Where all parts of an output's form are finite, computed in doubles: that output is defined on the whole set of (x, y, z)
     /// of which the arguments are forms, and what it is there for real arithmetic is one of the numbers of its form, for the same
@@ -42,7 +46,10 @@ impl Program {
         let mut forms: Vec<Form> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
             forms.push(match *node {
-                Node::Variable(argument) => arguments[argument.index()],
+                Node::Variable(argument) => match arguments.get(argument.index()) {
+                    Some(form) => *form,
+                    None => builder.number(argument.index() - arguments.len()),
+                },
                 Node::Constant(constant) => builder.constant(constant),
                 Node::Apply(Operation::IntegerPower, [base, exponent, _]) => {
                     let exponent =
@@ -102,6 +109,13 @@ impl Builder {
             [0, 1, 2, 3, 4].map(|part| self.0.intern(Node::Variable(Argument((first + part) as u8))));
         let form = Form { middle, slopes: [a, b, c].map(Some), rest: Some(rest), size: middle };
         Form { size: self.magnitude(form), ..form }
+    }
+
+    /// The form of one of the arguments that are numbers.
+    fn number(&mut self, place: usize) -> Form {
+        let argument = Argument((3 * PARTS + place) as u8);
+        let middle = self.0.intern(Node::Variable(argument));
+        Form { middle, slopes: [None; 3], rest: None, size: self.magnitude_of(middle) }
     }
 
     fn constant(&mut self, constant: Constant) -> Form {

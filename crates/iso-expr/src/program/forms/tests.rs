@@ -76,7 +76,7 @@ fn values_of_arithmetic_are_in_their_forms() {
         for _ in 0..20 {
             let symbols = symbols(&mut random);
             let point = arguments.map(|argument| member(&mut random, argument, symbols));
-            let exact = exact(&program, point);
+            let exact = exact(&program, point)[0];
             assert!(!exact.0.is_nan() || form[4] > 1e200, "{point:?} of\n{program}");
             let Twofold(off, _) = exact.plus(line(form, symbols).negated());
             if off.is_nan() {
@@ -149,8 +149,40 @@ fn gradients_of_what_has_forms_have_forms() {
         let program = random.program_of(1 + round % 15, &operations).simplified();
         if program.has_forms() {
             assert!(program.with_gradient().simplified().with_forms().is_some(), "{program}");
+            assert!(program.with_slope().simplified().with_forms().is_some(), "{program}");
         }
     }
+}
+
+/// The sum of the gradient's components times those of the direction, nearly exactly, is in the slope's form.
+#[test]
+fn slopes_are_in_their_forms() {
+    let mut random = Random::new(15);
+    let mut compared = 0;
+    for round in 0..4000 {
+        let program = random.program_of(1 + round % 12, &ARITHMETIC[..4]).simplified();
+        let gradient = program.with_gradient();
+        let forms = program.with_slope().simplified().with_forms().expect("arithmetic has forms");
+        let direction = [(); 3].map(|()| random.between(-1.0, 1.0));
+        let arguments = arguments(&mut random, [1e-9, 1e-3, 0.1][round % 3]);
+        let found = forms.evaluate([&arguments.concat()[..], &direction].concat());
+        let form: Form = found[PARTS..].try_into().unwrap();
+        if !is_known(&form) || form[4] > 1e100 {
+            continue;
+        }
+        for _ in 0..5 {
+            let symbols = symbols(&mut random);
+            let point = arguments.map(|argument| member(&mut random, argument, symbols));
+            let partials = exact(&gradient, point);
+            let products =
+                partials[1..].iter().zip(direction).map(|(partial, d)| partial.times(Twofold(d, 0.0)));
+            let slope = products.fold(Twofold(0.0, 0.0), Twofold::plus);
+            let Twofold(off, _) = slope.plus(line(form, symbols).negated());
+            assert!(!(off.abs() > form[4]), "off by {off}, not {}, at {symbols:?} of\n{program}", form[4]);
+            compared += usize::from(!off.is_nan());
+        }
+    }
+    assert!(compared > 10_000, "only {compared} slopes were compared");
 }
 
 /// Over |x − 1| ≤ 0.1: x² = 1.005 + 0.2·e ± 0.005, and what values have in common cancels.

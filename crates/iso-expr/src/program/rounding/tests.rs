@@ -42,7 +42,7 @@ fn check(program: &Program, sides: [Interval; 3], random: &mut Random) -> Option
     let mut largest: f64 = 0.0;
     for _ in 0..30 {
         let point = sides.map(|side| random.between(side.lo, side.hi));
-        let Twofold(exact, rest) = exact(program, point);
+        let Twofold(exact, rest) = exact(program, point)[0];
         if exact.is_nan() {
             continue; // Products of doubles near the largest are too large for two.
         }

@@ -5,6 +5,7 @@ use iso_expr::interval::round_up;
 use iso_expr::{Decorated, Decoration, Interval};
 
 use super::beam::Beam;
+use super::spread::Spread;
 use crate::Span;
 use crate::batch::Affine;
 
@@ -32,6 +33,28 @@ impl Ball {
     pub(super) fn around(interval: Interval) -> Self {
         let (lo, hi) = (0.5 * interval.lo, 0.5 * interval.hi);
         Self { middle: lo + hi, radius: hi - lo }.widened(f64::MIN_POSITIVE)
+    }
+
+    /// The numbers of an affine form.
+    pub(super) fn of(form: &Affine) -> Self {
+        let radius = form.slopes.abs().element_sum() + form.rest;
+        Self { middle: form.middle, radius }.widened(f64::MIN_POSITIVE)
+    }
+
+    /// The products of vectors, whose components are numbers of affine forms, and the directions of a beam.
+    pub(super) fn along(directions: &Spread, gradient: &[Affine]) -> Self {
+        let direction = directions.middle.to_array();
+        let (mut middle, mut slopes, mut rest, mut size) = (0.0, DVec3::ZERO, 0.0, 0.0);
+        for (axis, partial) in gradient.iter().enumerate() {
+            middle += direction[axis] * partial.middle;
+            slopes += direction[axis] * partial.slopes;
+            rest += direction[axis].abs() * partial.rest;
+            let magnitude = partial.middle.abs() + partial.slopes.abs().element_sum() + partial.rest;
+            rest += directions.radius[axis] * magnitude;
+            size += direction[axis].abs() * magnitude;
+        }
+        let radius = slopes.abs().element_sum() + rest + ROUNDING * size + f64::MIN_POSITIVE;
+        Self { middle, radius }.widened(0.0)
     }
 
     pub(super) fn magnitude(self) -> f64 {
@@ -151,26 +174,15 @@ impl Form {
         form.if_finite()
     }
 
-    /// What the affine forms of F and of its gradient say, which hold for the [forms](Beam::forms) of a stretch `reach` of the beam
-    /// around `t`, in a unit of t.
+    /// What the affine form of F says, which holds for the [forms](Beam::forms) of a stretch `reach` of the beam around `t`, in a unit
+    /// of t, with the derivative of F along all rays.
     pub(super) fn affine(
         beam: &Beam,
         reach: Span,
         (t, unit): (f64, f64),
-        [value, gradient @ ..]: &[Affine; 4],
+        value: &Affine,
+        slope: Ball,
     ) -> Self {
-        let d = &beam.directions;
-        let direction = d.middle.to_array();
-        let (mut middle, mut slopes, mut rest, mut size) = (0.0, DVec3::ZERO, 0.0, 0.0);
-        for (axis, partial) in gradient.iter().enumerate() {
-            middle += direction[axis] * partial.middle;
-            slopes += direction[axis] * partial.slopes;
-            rest += direction[axis].abs() * partial.rest;
-            let magnitude = partial.middle.abs() + partial.slopes.abs().element_sum() + partial.rest;
-            rest += d.radius[axis] * magnitude;
-            size += direction[axis].abs() * magnitude;
-        }
-        let radius = slopes.abs().element_sum() + rest + ROUNDING * size + f64::MIN_POSITIVE;
         // A beam of one column has no other.
         let each = |slope: f64, radius: f64| if radius > 0.0 { slope / radius } else { 0.0 };
         let across = value.slopes.x.abs() + value.slopes.y.abs();
@@ -180,7 +192,7 @@ impl Form {
             by_column: each(value.slopes.x, beam.radii[0]),
             by_row: each(value.slopes.y, beam.radii[1]),
             incline: Ball { middle: value.slopes.z / unit, radius: 0.0 }.widened(0.0),
-            slope: Ball { middle, radius }.widened(0.0),
+            slope,
             across: (1.0 + ROUNDING) * across,
             reach,
         };
@@ -335,9 +347,19 @@ mod tests {
             let (arguments, (t, unit)) = beam.forms(reach);
             let mut forms = FormBatch::default();
             forms.push(&arguments);
-            forms.evaluate(&**surface.forms().unwrap(), &mut scratch);
-            let Some(found) = forms.found(0) else { continue };
-            let form = Form::affine(&beam, reach, (t, unit), &found);
+            let found = match raster {
+                Raster::Parallel { direction, .. } => {
+                    forms.evaluate(&**surface.parallel_forms().unwrap(), Some(direction), 2, &mut scratch);
+                    forms.found(0).map(|[value, slope]| (value, Ball::of(&slope)))
+                }
+                Raster::Spreading { .. } => {
+                    forms.evaluate(&**surface.forms().unwrap(), None, 4, &mut scratch);
+                    let along = |gradient: [Affine; 3]| Ball::along(&beam.directions, &gradient);
+                    forms.found(0).map(|[value, x, y, z]| (value, along([x, y, z])))
+                }
+            };
+            let Some((value, slope)) = found else { continue };
+            let form = Form::affine(&beam, reach, (t, unit), &value, slope);
             let gradients = surface.gradients().unwrap();
             for _ in 0..20 {
                 let (column, row) = (area.column + random.below(side), area.row + random.below(side));

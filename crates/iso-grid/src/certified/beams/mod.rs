@@ -1,7 +1,7 @@
 //! Proofs shared by the rays of a tile.
 //!
-//! A *beam* is a rectangle of the tile's rays. Over a stretch of it F and its gradient are enclosed once for all its
-//! points, and the mean value form, whose excess shrinks with the square of the beam's size, says one of these things:
+//! A *beam* is a rectangle of the tile's rays. Over a stretch of it F and its slope are enclosed once for all its points, by affine
+//! forms or the mean value theorem, whose excess shrinks with the square of the beam's size, and that says one of these things:
 //! - F is nowhere zero: no ray of the beam has a root in the stretch;
 //! - F is monotone along every ray: each ray has at most one root there, and one step of the interval Newton method
 //!   over the beam tells about where. Then each ray's own root is approached by doubles from the beam's linear model, eight rays side by side. A
@@ -27,6 +27,7 @@ mod monotone;
 mod pixels;
 mod rounding;
 mod seams;
+mod slabs;
 mod spread;
 mod subdivision;
 
