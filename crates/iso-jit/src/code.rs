@@ -73,6 +73,8 @@ impl Code {
     fn new(isa: &Arc<dyn TargetIsa>) -> Self {
         let mut builder = JITBuilder::with_isa(Arc::clone(isa), default_libcall_names());
         builder.symbol_lookup_fn(Box::new(symbols::address));
+        #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+        builder.memory_provider(Box::new(crate::nearby::Nearby::default()));
         Self(Mutex::new(Some(JITModule::new(builder))))
     }
 

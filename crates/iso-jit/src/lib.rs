@@ -23,6 +23,8 @@ mod engine;
 mod host;
 mod lanes;
 mod listing;
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+mod nearby;
 mod pieces;
 mod point;
 mod symbols;
