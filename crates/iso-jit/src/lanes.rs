@@ -60,11 +60,7 @@ impl Writer<'_, '_> {
         let (builder, lanes) = (&mut *self.builder, self.lanes);
         *self.constants.entry(value.to_bits()).or_insert_with(|| match lanes {
             Lanes::One => builder.ins().f64const(value),
-            Lanes::Two => {
-                let bytes = [value.to_bits().to_le_bytes(); 2].concat();
-                let constant = builder.func.dfg.constants.insert(ConstantData::from(bytes));
-                builder.ins().vconst(types::F64X2, constant)
-            }
+            Lanes::Two => vector(builder, [value; 2]),
         })
     }
 
@@ -162,6 +158,26 @@ impl Writer<'_, '_> {
     }
 }
 
+/// Pairs of single doubles, for two evaluations by one instruction.
+impl Writer<'_, '_> {
+    /// Two doubles side by side.
+    pub(crate) fn constants(&mut self, values: [f64; 2]) -> Value {
+        vector(self.builder, values)
+    }
+
+    /// Two values side by side.
+    pub(crate) fn pair(&mut self, [a, b]: [Value; 2]) -> Value {
+        // One instruction on x86, where filling the other lane with zero takes two.
+        let a = self.builder.ins().splat(types::F64X2, a);
+        self.builder.ins().insertlane(a, b, 1)
+    }
+
+    /// The two values of a pair.
+    pub(crate) fn singles(&mut self, pair: Value) -> [Value; 2] {
+        [0, 1].map(|lane| self.builder.ins().extractlane(pair, lane))
+    }
+}
+
 /// What masks do to pairs of doubles, whose bits they cover.
 impl Writer<'_, '_> {
     /// Where both hold.
@@ -219,6 +235,13 @@ impl Writer<'_, '_> {
         let constant = self.constant(f64::from_bits(value));
         self.bits(constant)
     }
+}
+
+/// Two doubles in two lanes.
+fn vector(builder: &mut FunctionBuilder<'_>, values: [f64; 2]) -> Value {
+    let bytes = values.map(|value| value.to_bits().to_le_bytes()).concat();
+    let constant = builder.func.dfg.constants.insert(ConstantData::from(bytes));
+    builder.ins().vconst(types::F64X2, constant)
 }
 
 /// Elements of slices of doubles: never trapping, aligned to eight bytes only.

@@ -1,14 +1,15 @@
 //! Kernels over one point.
 
 use cranelift_codegen::ir::{AbiParam, InstBuilder, MemFlagsData, Signature, Value, types};
+use cranelift_codegen::packed_option::ReservedValue;
 use cranelift_frontend::FunctionBuilder;
-use iso_expr::{PointKernel, Program, Scratch};
+use iso_expr::{Node, NodeId, PointKernel, Program, Scratch};
 
 use crate::code::{Blueprint, Compiled};
 use crate::host::{self, Limits};
 use crate::lanes::{Lanes, Writer};
 use crate::symbols::Calls;
-use crate::values;
+use crate::{pairs, values};
 
 /// A program's one output at (x, y, z), as native code.
 pub struct NativeFunction(pub(crate) Compiled<extern "C" fn(f64, f64, f64) -> f64>);
@@ -106,8 +107,31 @@ fn outputs(
     arguments: [Value; 3],
 ) -> Vec<Value> {
     let mut writer = Writer::new(builder, Lanes::One);
-    values::evaluate(&mut writer, calls, program, 1, |_, argument| vec![arguments[argument.index()]])
-        .remove(0)
+    // Nodes are not always written in their order.
+    let mut values = vec![Value::reserved_value(); program.nodes().len()];
+    for (id, other) in pairs::steps(program) {
+        let of = |operand: NodeId| values[operand.index()];
+        match (program.node(id), other) {
+            (Node::Variable(argument), _) => values[id.index()] = arguments[argument.index()],
+            (Node::Constant(constant), _) => values[id.index()] = writer.constant(constant.value()),
+            (Node::Apply(operation, operands), None) => {
+                values[id.index()] = values::apply(&mut writer, calls, operation, operands.map(of));
+            }
+            (Node::Apply(operation, operands), Some(other)) => {
+                let mut pairs = operands.map(of);
+                for (place, pair) in pairs.iter_mut().enumerate().take(operation.arity()) {
+                    let both = [operands[place], program.node(other).operands()[place]];
+                    *pair = match both.map(|operand| program.node(operand)) {
+                        [Node::Constant(a), Node::Constant(b)] => writer.constants([a.value(), b.value()]),
+                        _ => writer.pair(both.map(of)),
+                    };
+                }
+                let results = values::apply(&mut writer, calls, operation, pairs);
+                [values[id.index()], values[other.index()]] = writer.singles(results);
+            }
+        }
+    }
+    program.outputs().iter().map(|output| values[output.index()]).collect()
 }
 
 fn parameters<'a>(builder: &'a FunctionBuilder<'_>) -> &'a [Value] {

@@ -89,7 +89,7 @@ fn waves(program: &Program) -> HashMap<NodeId, [bool; 2]> {
 }
 
 /// Writes one operation. Only as many operands as its arity count.
-fn apply(
+pub(crate) fn apply(
     writer: &mut Writer<'_, '_>,
     calls: &mut Calls<'_>,
     operation: Operation,

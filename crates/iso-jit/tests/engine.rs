@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::thread;
 
 use iso_expr::random::Random;
-use iso_expr::{Axis, BatchKernel, CompileError, Engine, Operation, Program, Scratch};
+use iso_expr::{Ast, Axis, BatchKernel, CompileError, Engine, Operation, Program, Scratch};
 use iso_jit::{Jit, Kind};
 
 /// x + 1·y + 2·x + 3·y …: as deep as it is long.
@@ -97,5 +97,18 @@ fn listings_show_the_code() {
         assert!(listing.clif.contains("fmul") && listing.clif.contains(ty), "{}", listing.clif);
         assert!(listing.assembly.contains("ret"), "{}", listing.assembly);
         assert!(listing.code_bytes > 50 && listing.compile_time.as_nanos() > 0);
+    }
+}
+
+#[test]
+fn a_point_takes_one_instruction_for_two_divisions() {
+    let jit = Jit::new().unwrap();
+    for (formula, expected) in
+        [("1/x + 1/y + z/(x + y) + x/(y + z)", 2), ("1/(1 + 1/x)", 2), ("sqrt(x) - sqrt(y)", 1)]
+    {
+        let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
+        let listing = jit.listing(&program, Kind::Point).unwrap();
+        let written = ["fdiv", "sqrt"].map(|name| listing.clif.matches(name).count());
+        assert_eq!(written.iter().sum::<usize>(), expected, "{}", listing.clif);
     }
 }

@@ -86,6 +86,23 @@ fn random_programs_agree() {
     }
 }
 
+/// Point kernels evaluate two of them by one instruction.
+#[test]
+fn divisions_and_roots_agree() {
+    let (jit, mut random) = (Jit::new().unwrap(), Random::new(10));
+    let mut operations = vec![Operation::Divide; 3];
+    operations.extend([Operation::SquareRoot, Operation::SquareRoot, Operation::Add, Operation::Subtract]);
+    operations.extend([Operation::Multiply, Operation::Absolute, Operation::Maximum, Operation::Select]);
+    for round in 0..400 {
+        let mut program = random.program_of(2 + round % 60, &operations);
+        if round % 2 == 0 {
+            // So that no value that differs is lost on the way to the end.
+            program.set_outputs(program.iter().map(|(id, _)| id).collect());
+        }
+        values_agree(&jit, &program, &points(&mut random, 40));
+    }
+}
+
 #[test]
 fn programs_that_spill_agree() {
     let (jit, mut random) = (Jit::new().unwrap(), Random::new(6));
