@@ -117,7 +117,7 @@ impl<'a> Formula<'a> {
                 for (name, engine) in engines {
                     entries.push(Entry::new(name, point_kernel(engine.point(self.value)?, points)));
                 }
-                entries.push(Entry::new("rust", each_point(points, black_box(native.value))));
+                entries.push(Entry::new("rust", point_kernel(black_box(native.point)(), points)));
             }
             Discipline::Batch | Discipline::BatchGradient => {
                 let (program, narrow, wide) = match discipline {

@@ -3,9 +3,10 @@
 //! All loops run over slices, whose elements LLVM puts side by side in as wide registers as the named features have.
 
 use std::arch::is_x86_feature_detected;
+use std::sync::Arc;
 
-use iso_expr::Interval;
 use iso_expr::engine::Boxes;
+use iso_expr::{Interval, PointKernel, Scratch};
 
 use crate::{formulas, operations};
 
@@ -22,12 +23,24 @@ pub type Sweep = fn([&[f64]; 3], &mut [f64]);
 /// A kernel over boxes, writing lower and upper ends.
 pub type BoxSweep = fn(Boxes<'_>, lo: &mut [f64], hi: &mut [f64]);
 
+/// A function of a point as a kernel.
+struct Point<F>(F);
+
+impl<F: Fn(f64, f64, f64) -> f64 + Send + Sync> PointKernel for Point<F> {
+    fn evaluate(&self, _: &mut Scratch, x: f64, y: f64, z: f64, values: &mut [f64]) {
+        let [value] = values else { panic!("one output") };
+        *value = (self.0)(x, y, z);
+    }
+}
+
 /// What rustc makes of one formula.
 pub struct Native {
     /// The formula's name.
     pub name: &'static str,
     /// F at a point.
     pub value: fn(f64, f64, f64) -> f64,
+    /// The same behind the trait that the engines' kernels are called through.
+    pub point: fn() -> Arc<dyn PointKernel>,
     /// F over a batch, in 128-bit lanes.
     pub values: Sweep,
     /// F and its gradient over a batch, in 128-bit lanes.
@@ -128,6 +141,7 @@ macro_rules! natives {
         pub const NATIVES: [Native; MEASURED.len()] = [$(Native {
             name: stringify!($name),
             value: $name::value,
+            point: || Arc::new(Point(formulas::$name)),
             values: $name::narrow::values,
             gradients: $name::narrow::gradients,
             wide_values: $name::wide::values,
