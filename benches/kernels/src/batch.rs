@@ -30,7 +30,8 @@ impl Batch {
             let part = |symbol: usize| vec![radius / if symbol == axis { 64.0 } else { 128.0 }; COUNT];
             [points[axis].clone(), part(0), part(1), part(2), vec![0.0; COUNT]]
         };
-        let forms = (0..3).flat_map(form).collect();
+        let direction = [-0.5, -0.75, 0.375].map(|component| vec![component; COUNT]);
+        let forms = (0..3).flat_map(form).chain(direction).collect();
         Self { lo: moved(-radius / 64.0), hi: moved(radius / 64.0), forms, points }
     }
 
@@ -39,7 +40,7 @@ impl Batch {
         slices(&self.points)
     }
 
-    /// Affine forms of sets of points that lie askew around the points, part by part.
+    /// Affine forms of sets of points that lie askew around the points, part by part, and a direction.
     pub fn forms(&self) -> Vec<&[f64]> {
         self.forms.iter().map(Vec::as_slice).collect()
     }

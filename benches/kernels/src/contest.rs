@@ -28,11 +28,13 @@ pub enum Discipline {
     BoxesGradient,
     /// The affine forms of F and its gradient over a batch of sets of points.
     Forms,
+    /// Those of F and its slope along parallel rays.
+    ParallelForms,
 }
 
 impl Discipline {
     /// All of them, from the least work to the most.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Function,
         Self::Point,
         Self::Batch,
@@ -40,6 +42,7 @@ impl Discipline {
         Self::Boxes,
         Self::BoxesGradient,
         Self::Forms,
+        Self::ParallelForms,
     ];
 
     /// Its name in tables.
@@ -52,6 +55,7 @@ impl Discipline {
             Self::Boxes => "boxes",
             Self::BoxesGradient => "boxes+gradient",
             Self::Forms => "forms",
+            Self::ParallelForms => "parallel forms",
         }
     }
 
@@ -63,6 +67,7 @@ impl Discipline {
             Self::Boxes => 2 * COUNT,
             Self::BoxesGradient => 2 * 4 * COUNT,
             Self::Forms => Program::FORM * 4 * COUNT,
+            Self::ParallelForms => Program::FORM * 2 * COUNT,
         }
     }
 }
@@ -144,8 +149,12 @@ impl<'a> Formula<'a> {
                     entries.push(Entry::new("rust", box_sweep(rust, boxes)));
                 }
             }
-            Discipline::Forms => {
-                let program = self.gradient.with_forms().expect("the measured formulas have forms");
+            Discipline::Forms | Discipline::ParallelForms => {
+                let forms = match discipline {
+                    Discipline::Forms => self.gradient.with_forms(),
+                    _ => self.value.with_slope().simplified().with_forms(),
+                };
+                let program = forms.expect("the measured formulas have forms");
                 for (name, engine) in engines {
                     let arguments = self.batch.forms();
                     entries.push(Entry::new(name, batch_kernel(engine.batch(&program)?, arguments)));

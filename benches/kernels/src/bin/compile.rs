@@ -18,8 +18,19 @@ const TERMS: [usize; 7] = [3, 10, 30, 100, 300, 700, 1_400];
 /// Formulas of more operations are not asked for their forms.
 const WITH_FORMS: usize = 100;
 /// The kernels of one formula, from the point kernel of F to the affine forms of F and its gradient.
-const KERNELS: [&str; 7] =
-    ["point", "batch", "batch+gradient", "boxes", "boxes+gradient", "boxes+rounding", "forms"];
+const KERNELS: [&str; 8] = [
+    "point",
+    "batch",
+    "batch+gradient",
+    "boxes",
+    "boxes+gradient",
+    "boxes+rounding",
+    "forms",
+    "parallel forms",
+];
+
+/// Those that a picture of parallel rays with normals compiles ahead where there are forms.
+const AHEAD: [&str; 4] = ["batch", "batch+gradient", "boxes", "parallel forms"];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let machine = Machine::here();
@@ -28,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{machine}\nMilliseconds to compile: median of {TURNS}; - where the engine refuses.\n");
     print!("{:<12}{:>10}", "formula", "operations");
     KERNELS.iter().for_each(|kernel| print!("{kernel:>16}"));
-    println!("{:>10}", "all");
+    println!("{:>10}{:>10}", "all", "ahead");
     let surfaces = SUBJECTS.iter().map(|subject| (subject.name.to_owned(), subject.program()));
     let sums = TERMS.iter().map(|terms| (format!("sum {terms}"), sum_of_products(*terms)));
     for (name, program) in surfaces.chain(sums) {
@@ -51,14 +62,15 @@ fn measure(name: &str, value: &Program, results: &mut Results) -> Result<(), Box
     let (gradient, rounding) = (value.with_gradient().simplified(), value.with_rounding().simplified());
     let has_forms = value.has_forms() && value.operations() <= WITH_FORMS;
     let forms = has_forms.then(|| gradient.with_forms()).flatten();
+    let parallel_forms = has_forms.then(|| value.with_slope().simplified().with_forms()).flatten();
     let operations = value.operations().to_string();
-    let mut all = 0.0;
+    let (mut all, mut ahead) = (0.0, 0.0);
     print!("{name:<12}{operations:>10}");
     for kernel in KERNELS {
         let program = match kernel {
             "batch+gradient" | "boxes+gradient" => &gradient,
             "boxes+rounding" => &rounding,
-            "forms" => match &forms {
+            "forms" | "parallel forms" => match if kernel == "forms" { &forms } else { &parallel_forms } {
                 Some(forms) => forms,
                 None => {
                     print!("{:>16}", "-");
@@ -83,17 +95,18 @@ fn measure(name: &str, value: &Program, results: &mut Results) -> Result<(), Box
         } else {
             let median = milliseconds.spread().median;
             all += median;
+            ahead += if AHEAD.contains(&kernel) { median } else { 0.0 };
             print!("{:>16}", rounded(median, 3));
         }
     }
-    println!("{:>10}", rounded(all, 3));
+    println!("{:>10}{:>10}", rounded(all, 3), rounded(ahead, 3));
     Ok(())
 }
 
 fn compile(jit: &Jit, kernel: &str, program: &Program) -> Result<(), CompileError> {
     match kernel {
         "point" => drop(black_box(jit.point(program)?)),
-        "batch" | "batch+gradient" | "forms" => drop(black_box(jit.batch(program)?)),
+        "batch" | "batch+gradient" | "forms" | "parallel forms" => drop(black_box(jit.batch(program)?)),
         _ => drop(black_box(jit.boxes(program)?)),
     }
     Ok(())
