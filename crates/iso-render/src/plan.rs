@@ -47,7 +47,7 @@ pub struct Decision<T> {
     pub reason: &'static str,
 }
 
-/// What is known before the first ray, and might be a constant of the kernels.
+/// What is known before the first ray, so that kernels might be made for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Given {
     /// The level C.
@@ -173,7 +173,7 @@ impl Plan {
         &self.arguments
     }
 
-    /// What is a constant of the kernels.
+    /// What of all that is known before the first ray the kernels are made for.
     pub fn constants(&self) -> &[Decision<Given>] {
         &self.constants
     }

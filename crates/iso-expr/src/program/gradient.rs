@@ -29,7 +29,7 @@ impl Program {
         assert_eq!(self.outputs.len(), 1, "one function is differentiated at a time");
         let directions = Axis::ALL.map(|axis| Node::Variable(Argument::of_direction(axis)));
         let Derivatives { mut program, values, gradients } =
-            self.differentiated(|program, argument| [program.intern(directions[argument.index()])].map(Some));
+            self.differentiated(|program, argument| [Some(program.intern(directions[argument.index()]))]);
         let [slope] = gradients[0].map(|slope| slope.unwrap_or_else(|| program.literal(0.0)));
         program.outputs = vec![values[0], slope];
         program.pruned()
