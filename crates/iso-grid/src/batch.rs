@@ -118,15 +118,15 @@ impl FormBatch {
         self.arguments[0].len()
     }
 
-    /// Finds so many forms of F and its derivatives by their kernel, which takes the direction of all rays if there is one.
+    /// Finds the forms of F and its gradient by their kernel, or of F and its slope by one that takes the direction of all rays.
     pub(crate) fn evaluate(
         &mut self,
         kernel: &dyn BatchKernel,
         direction: Option<DVec3>,
-        outputs: usize,
         scratch: &mut Scratch,
     ) {
         let count = self.len();
+        let outputs = if direction.is_some() { 2 } else { 4 };
         self.found.resize(outputs * Program::FORM * count, f64::NAN);
         if count == 0 {
             return;

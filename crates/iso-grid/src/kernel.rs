@@ -52,6 +52,17 @@ impl Kernel {
         }
     }
 
+    /// Whether it runs over boxes, and not over points or forms.
+    pub(crate) fn runs_over_boxes(self) -> bool {
+        match self {
+            Self::ValueEnclosures
+            | Self::GradientEnclosures
+            | Self::RoundingBounds
+            | Self::HessianEnclosures => true,
+            Self::Values | Self::Gradients | Self::Forms | Self::ParallelForms => false,
+        }
+    }
+
     /// Whether it is compiled ahead of its use. What is asked for seldom is made for few runs until it was asked for often: for many
     /// pictures that is never. Where there are forms, enclosures of the gradient are asked for only where those say too little.
     pub fn is_compiled_ahead(self, has_forms: bool) -> bool {

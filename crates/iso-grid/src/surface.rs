@@ -39,18 +39,12 @@ struct Programs {
     parallel_forms: OnceLock<Program>,
 }
 
-/// The kernels, compiled when first needed.
+/// The kernels by number, compiled when first needed.
 #[derive(Default)]
 struct Compiled {
-    values: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
-    gradients: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
-    value_enclosures: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
-    gradient_enclosures: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
-    rounding_bounds: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
-    hessian_enclosures: OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>,
-    forms: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
-    parallel_forms: OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>,
-    /// For each kernel over boxes that is not compiled ahead.
+    over_points: [OnceLock<Result<Arc<dyn BatchKernel>, CompileError>>; Kernel::ALL.len()],
+    over_boxes: [OnceLock<Result<Arc<dyn BoxKernel>, CompileError>>; Kernel::ALL.len()],
+    /// Those over boxes that are not compiled ahead.
     for_few_runs: [OnceLock<Arc<dyn BoxKernel>>; Kernel::ALL.len()],
 }
 
@@ -172,7 +166,7 @@ impl Surface {
     /// # Errors
     /// When the engine cannot compile it.
     pub fn values(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
-        compiled(&self.kernels.values, || self.engine.batch(self.program_of(Kernel::Values)))
+        self.over_points(Kernel::Values)
     }
 
     /// F − C and its three derivatives at points.
@@ -180,103 +174,7 @@ impl Surface {
     /// # Errors
     /// When the engine cannot compile it.
     pub fn gradients(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
-        compiled(&self.kernels.gradients, || self.engine.batch(self.program_of(Kernel::Gradients)))
-    }
-
-    /// F − C over boxes.
-    ///
-    /// # Errors
-    /// When the engine cannot compile it.
-    pub fn value_enclosures(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
-        compiled(&self.kernels.value_enclosures, || {
-            self.engine.boxes(self.program_of(Kernel::ValueEnclosures))
-        })
-    }
-
-    /// F − C and its three derivatives over boxes.
-    ///
-    /// # Errors
-    /// When the engine cannot compile it.
-    pub fn gradient_enclosures(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
-        compiled(&self.kernels.gradient_enclosures, || {
-            self.engine.boxes(self.program_of(Kernel::GradientEnclosures))
-        })
-    }
-
-    /// Compiles a kernel ahead of its use, so that the time it takes is known.
-    ///
-    /// # Errors
-    /// When the engine cannot compile it.
-    pub fn compile(&self, kernel: Kernel) -> Result<(), CompileError> {
-        match kernel {
-            Kernel::Values => self.values().map(drop),
-            Kernel::Gradients => self.gradients().map(drop),
-            Kernel::ValueEnclosures => self.value_enclosures().map(drop),
-            Kernel::GradientEnclosures => self.gradient_enclosures().map(drop),
-            Kernel::RoundingBounds => self.rounding_bounds().map(drop),
-            Kernel::HessianEnclosures => self.hessian_enclosures().map(drop),
-            Kernel::Forms => self.forms().map(drop),
-            Kernel::ParallelForms => self.parallel_forms().map(drop),
-        }
-    }
-
-    /// Whether a kernel was compiled by now.
-    pub fn is_compiled(&self, kernel: Kernel) -> bool {
-        match kernel {
-            Kernel::Values => matches!(self.kernels.values.get(), Some(Ok(_))),
-            Kernel::Gradients => matches!(self.kernels.gradients.get(), Some(Ok(_))),
-            Kernel::ValueEnclosures => matches!(self.kernels.value_enclosures.get(), Some(Ok(_))),
-            Kernel::GradientEnclosures => matches!(self.kernels.gradient_enclosures.get(), Some(Ok(_))),
-            Kernel::RoundingBounds => matches!(self.kernels.rounding_bounds.get(), Some(Ok(_))),
-            Kernel::HessianEnclosures => matches!(self.kernels.hessian_enclosures.get(), Some(Ok(_))),
-            Kernel::Forms => matches!(self.kernels.forms.get(), Some(Ok(_))),
-            Kernel::ParallelForms => matches!(self.kernels.parallel_forms.get(), Some(Ok(_))),
-        }
-    }
-
-    /// F − C, [what rounding does to it](Program::with_rounding) and its three derivatives over boxes.
-    ///
-    /// # Errors
-    /// When the engine cannot compile it.
-    pub fn rounding_bounds(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
-        compiled(&self.kernels.rounding_bounds, || self.engine.boxes(self.program_of(Kernel::RoundingBounds)))
-    }
-
-    /// A kernel over boxes, made for few runs.
-    pub(crate) fn for_few_runs(&self, kernel: Kernel) -> &Arc<dyn BoxKernel> {
-        self.kernels.for_few_runs[kernel as usize].get_or_init(|| {
-            let kernel = self.engine.for_few_runs().boxes(self.program_of(kernel));
-            kernel.expect("an engine for few runs takes any program")
-        })
-    }
-
-    /// A kernel over boxes.
-    ///
-    /// # Errors
-    /// When the engine cannot compile it.
-    ///
-    /// # Panics
-    /// When the kernel runs over points.
-    pub(crate) fn over_boxes(&self, kernel: Kernel) -> Result<&Arc<dyn BoxKernel>, CompileError> {
-        match kernel {
-            Kernel::ValueEnclosures => self.value_enclosures(),
-            Kernel::GradientEnclosures => self.gradient_enclosures(),
-            Kernel::RoundingBounds => self.rounding_bounds(),
-            Kernel::HessianEnclosures => self.hessian_enclosures(),
-            Kernel::Values | Kernel::Gradients | Kernel::Forms | Kernel::ParallelForms => {
-                unreachable!("they run over points")
-            }
-        }
-    }
-
-    /// F − C with its [first and second derivatives](Program::with_hessian) over boxes.
-    ///
-    /// # Errors
-    /// When the engine cannot compile it.
-    pub fn hessian_enclosures(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
-        compiled(&self.kernels.hessian_enclosures, || {
-            self.engine.boxes(self.program_of(Kernel::HessianEnclosures))
-        })
+        self.over_points(Kernel::Gradients)
     }
 
     /// The [affine forms](Program::with_forms) of F − C and its three derivatives, made for few runs where that kernel is too large to be
@@ -288,30 +186,97 @@ impl Surface {
     /// # Panics
     /// When there are [none](Program::has_forms).
     pub fn forms(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
-        compiled(&self.kernels.forms, || self.batch_of_any_size(Kernel::Forms))
+        self.over_points(Kernel::Forms)
     }
 
-    /// The [affine forms](Program::with_forms) of F − C and its [slope](Program::with_slope), made for few runs where that kernel is too
-    /// large to be compiled.
+    /// The same of F − C and its [slope](Program::with_slope).
     ///
     /// # Errors
-    /// When the engine cannot do that either.
+    /// Those of [`Surface::forms`].
     ///
     /// # Panics
     /// When there are [none](Program::has_forms).
     pub fn parallel_forms(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
-        compiled(&self.kernels.parallel_forms, || self.batch_of_any_size(Kernel::ParallelForms))
+        self.over_points(Kernel::ParallelForms)
     }
 
-    fn batch_of_any_size(&self, kernel: Kernel) -> Result<Arc<dyn BatchKernel>, CompileError> {
-        let program = self.program_of(kernel);
-        self.engine.batch(program).or_else(|_| self.engine.for_few_runs().batch(program))
+    /// F − C over boxes.
+    ///
+    /// # Errors
+    /// When the engine cannot compile it.
+    pub fn value_enclosures(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
+        self.over_boxes(Kernel::ValueEnclosures)
     }
-}
 
-fn compiled<K>(
-    cell: &OnceLock<Result<K, CompileError>>,
-    compile: impl FnOnce() -> Result<K, CompileError>,
-) -> Result<&K, CompileError> {
-    cell.get_or_init(compile).as_ref().map_err(Clone::clone)
+    /// F − C and its three derivatives over boxes.
+    ///
+    /// # Errors
+    /// When the engine cannot compile it.
+    pub fn gradient_enclosures(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
+        self.over_boxes(Kernel::GradientEnclosures)
+    }
+
+    /// F − C, [what rounding does to it](Program::with_rounding) and its three derivatives over boxes.
+    ///
+    /// # Errors
+    /// When the engine cannot compile it.
+    pub fn rounding_bounds(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
+        self.over_boxes(Kernel::RoundingBounds)
+    }
+
+    /// F − C with its [first and second derivatives](Program::with_hessian) over boxes.
+    ///
+    /// # Errors
+    /// When the engine cannot compile it.
+    pub fn hessian_enclosures(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
+        self.over_boxes(Kernel::HessianEnclosures)
+    }
+
+    /// Compiles a kernel ahead of its use, so that the time it takes is known.
+    ///
+    /// # Errors
+    /// When the engine cannot compile it.
+    pub fn compile(&self, kernel: Kernel) -> Result<(), CompileError> {
+        if kernel.runs_over_boxes() {
+            self.over_boxes(kernel).map(drop)
+        } else {
+            self.over_points(kernel).map(drop)
+        }
+    }
+
+    /// Whether a kernel was compiled by now.
+    pub fn is_compiled(&self, kernel: Kernel) -> bool {
+        let Compiled { over_points, over_boxes, .. } = &*self.kernels;
+        matches!(over_points[kernel as usize].get(), Some(Ok(_)))
+            || matches!(over_boxes[kernel as usize].get(), Some(Ok(_)))
+    }
+
+    /// A kernel that runs over points, or over forms.
+    pub(crate) fn over_points(&self, kernel: Kernel) -> Result<&Arc<dyn BatchKernel>, CompileError> {
+        let compile = || {
+            let program = self.program_of(kernel);
+            let compiled = self.engine.batch(program);
+            match kernel {
+                Kernel::Forms | Kernel::ParallelForms => {
+                    compiled.or_else(|_| self.engine.for_few_runs().batch(program))
+                }
+                _ => compiled,
+            }
+        };
+        self.kernels.over_points[kernel as usize].get_or_init(compile).as_ref().map_err(Clone::clone)
+    }
+
+    /// A kernel that runs over boxes.
+    pub(crate) fn over_boxes(&self, kernel: Kernel) -> Result<&Arc<dyn BoxKernel>, CompileError> {
+        let compile = || self.engine.boxes(self.program_of(kernel));
+        self.kernels.over_boxes[kernel as usize].get_or_init(compile).as_ref().map_err(Clone::clone)
+    }
+
+    /// A kernel that runs over boxes, made for few runs.
+    pub(crate) fn for_few_runs(&self, kernel: Kernel) -> &Arc<dyn BoxKernel> {
+        self.kernels.for_few_runs[kernel as usize].get_or_init(|| {
+            let kernel = self.engine.for_few_runs().boxes(self.program_of(kernel));
+            kernel.expect("an engine for few runs takes any program")
+        })
+    }
 }

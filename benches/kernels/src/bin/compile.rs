@@ -29,11 +29,6 @@ const KERNELS: [&str; 8] = [
     "parallel forms",
 ];
 
-/// Those that a picture of parallel rays with normals compiles ahead, and besides them: which one depends on whether there are forms.
-const AHEAD: [&str; 3] = ["batch", "batch+gradient", "boxes"];
-const AHEAD_WITH_FORMS: &str = "parallel forms";
-const AHEAD_WITHOUT_FORMS: &str = "boxes+gradient";
-
 fn main() -> Result<(), Box<dyn Error>> {
     let machine = Machine::here();
     let columns = ["formula", "operations", "kernel", "kernel's operations", "turn", "milliseconds"];
@@ -66,21 +61,19 @@ fn measure(name: &str, value: &Program, results: &mut Results) -> Result<(), Box
     let forms = has_forms.then(|| gradient.with_forms()).flatten();
     let parallel_forms = has_forms.then(|| value.with_slope().simplified().with_forms()).flatten();
     let operations = value.operations().to_string();
-    let one_more = if has_forms { AHEAD_WITH_FORMS } else { AHEAD_WITHOUT_FORMS };
     let (mut all, mut ahead) = (0.0, 0.0);
     print!("{name:<12}{operations:>10}");
     for kernel in KERNELS {
         let program = match kernel {
-            "batch+gradient" | "boxes+gradient" => &gradient,
-            "boxes+rounding" => &rounding,
-            "forms" | "parallel forms" => match if kernel == "forms" { &forms } else { &parallel_forms } {
-                Some(forms) => forms,
-                None => {
-                    print!("{:>16}", "-");
-                    continue;
-                }
-            },
-            _ => value,
+            "batch+gradient" | "boxes+gradient" => Some(&gradient),
+            "boxes+rounding" => Some(&rounding),
+            "forms" => forms.as_ref(),
+            "parallel forms" => parallel_forms.as_ref(),
+            _ => Some(value),
+        };
+        let Some(program) = program else {
+            print!("{:>16}", "-");
+            continue;
         };
         let mut milliseconds = Samples::default();
         for turn in 0..TURNS {
@@ -98,12 +91,22 @@ fn measure(name: &str, value: &Program, results: &mut Results) -> Result<(), Box
         } else {
             let median = milliseconds.spread().median;
             all += median;
-            ahead += if AHEAD.contains(&kernel) || kernel == one_more { median } else { 0.0 };
+            ahead += if is_ahead(kernel, has_forms) { median } else { 0.0 };
             print!("{:>16}", rounded(median, 3));
         }
     }
     println!("{:>10}{:>10}", rounded(all, 3), rounded(ahead, 3));
     Ok(())
+}
+
+/// Whether a picture of parallel rays with normals compiles the kernel ahead.
+fn is_ahead(kernel: &str, has_forms: bool) -> bool {
+    match kernel {
+        "batch" | "batch+gradient" | "boxes" => true,
+        "parallel forms" => has_forms,
+        "boxes+gradient" => !has_forms,
+        _ => false,
+    }
 }
 
 fn compile(jit: &Jit, kernel: &str, program: &Program) -> Result<(), CompileError> {

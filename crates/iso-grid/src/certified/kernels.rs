@@ -304,12 +304,7 @@ impl Kernels {
 
     /// The affine forms of F and its derivatives, by one of the kernels of forms, where that pays.
     pub(super) fn forms(&self, kernel: Kernel) -> Option<&dyn BatchKernel> {
-        let surface = self.formula.surface();
-        let forms = || match kernel {
-            Kernel::ParallelForms => surface.parallel_forms(),
-            _ => surface.forms(),
-        };
-        self.formula.has_forms.then(|| &**compiled(forms()))
+        self.formula.has_forms.then(|| &**compiled(self.formula.surface().over_points(kernel)))
     }
 
     /// The corners of the box on which they hold.

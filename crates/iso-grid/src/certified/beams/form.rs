@@ -349,11 +349,11 @@ mod tests {
             forms.push(&arguments);
             let found = match raster {
                 Raster::Parallel { direction, .. } => {
-                    forms.evaluate(&**surface.parallel_forms().unwrap(), Some(direction), 2, &mut scratch);
+                    forms.evaluate(&**surface.parallel_forms().unwrap(), Some(direction), &mut scratch);
                     forms.found(0).map(|[value, slope]| (value, Ball::of(&slope)))
                 }
                 Raster::Spreading { .. } => {
-                    forms.evaluate(&**surface.forms().unwrap(), None, 4, &mut scratch);
+                    forms.evaluate(&**surface.forms().unwrap(), None, &mut scratch);
                     let along = |gradient: [Affine; 3]| Ball::along(&beam.directions, &gradient);
                     forms.found(0).map(|[value, x, y, z]| (value, along([x, y, z])))
                 }

@@ -118,7 +118,7 @@ impl Subdivision<'_> {
         let Some(&Slab { beam, kernels, .. }) = slabs.first() else { return };
         let (area, kernels) = (self.beam(beam).area, self.kernels(kernels));
         let is_large = area.width.max(area.height) > VAGUE;
-        let has_forms = kernels.forms(self.forms).is_some();
+        let has_forms = kernels.forms(self.forms()).is_some();
         if kernels.may_be_shortened() || has_forms && is_large {
             // The gradient of a formula with branches takes much longer than its values, which often say enough. Of large sets
             // forms say less than enclosures.
@@ -135,6 +135,7 @@ impl Subdivision<'_> {
     /// Keeps slabs that may hold roots, as far as affine forms tell, which know how F depends on column, row and t.
     fn keep_by_forms(&mut self, slabs: &mut [Slab]) {
         let Some(&Slab { kernels, .. }) = slabs.first() else { return };
+        let kind = self.forms();
         let Workspace { forms, scratch, counters, .. } = &mut *self.workspace;
         let mut units = [(0.0, 0.0); BATCH];
         forms.clear();
@@ -144,17 +145,15 @@ impl Subdivision<'_> {
             *unit = of_t;
         }
         let kernels = &self.kernels[kernels as usize];
-        let kernel = kernels.forms(self.forms).expect("there are forms");
-        let direction = self.tile.direction();
-        forms.evaluate(kernel, direction, if direction.is_some() { 2 } else { 4 }, scratch);
+        forms.evaluate(kernels.forms(kind).expect("there are forms"), self.tile.direction(), scratch);
         counters.box_evaluations += slabs.len() as u64;
-        counters.operations += kernels.charge(self.forms, slabs.len());
+        counters.operations += kernels.charge(kind, slabs.len());
         self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
         for number in 0..slabs.len() {
             let Slab { beam, kernels, stretch, reach, is_inside, .. } = slabs[number];
             let rays = self.beam(beam);
             let forms = &self.workspace.forms;
-            let found = match self.forms {
+            let found = match kind {
                 Kernel::ParallelForms => forms.found(number).map(|[value, slope]| (value, Ball::of(&slope))),
                 _ => forms.found(number).map(|[value, gradient @ ..]: [Affine; 4]| {
                     (value, Ball::along(&rays.directions, &gradient))

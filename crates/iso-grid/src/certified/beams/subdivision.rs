@@ -80,8 +80,6 @@ pub(in crate::certified) struct Subdivision<'a> {
     pub(super) kernels: Vec<Arc<Kernels>>,
     /// The kernels of which each of some kernels is the least or the greatest, by number; `None` where it is neither.
     pub(super) faces: FxHashMap<u32, Option<(Extreme, Vec<u32>)>>,
-    /// The kernel of the forms that tell the tile's rays.
-    pub(super) forms: Kernel,
     /// How many more boxes may be enclosed.
     pub(super) work_left: u64,
     pub(super) least_overlap: f64,
@@ -120,7 +118,6 @@ impl<'a> Subdivision<'a> {
         memory.open.resize(tile.len(), true);
         let kernels = vec![Arc::clone(&certified.kernels)];
         let work_left = WORK_LIMIT * tile.len() as u64;
-        let forms = if tile.direction().is_some() { Kernel::ParallelForms } else { Kernel::Forms };
         Some(Self {
             certified,
             workspace,
@@ -129,7 +126,6 @@ impl<'a> Subdivision<'a> {
             memory,
             kernels,
             faces: FxHashMap::default(),
-            forms,
             work_left,
             least_overlap: 0.0,
         })
@@ -178,6 +174,11 @@ impl<'a> Subdivision<'a> {
     /// The kernels of a number.
     pub(super) fn kernels(&self, number: u32) -> &Arc<Kernels> {
         &self.kernels[number as usize]
+    }
+
+    /// The kernel of the forms that tell the tile's rays.
+    pub(super) fn forms(&self) -> Kernel {
+        if self.tile.direction().is_some() { Kernel::ParallelForms } else { Kernel::Forms }
     }
 
     /// The column and the row of a ray of the tile.
