@@ -144,9 +144,12 @@ fn write_points(picture: &Picture, writer: &mut dyn Write) -> io::Result<()> {
         let (point, normal) = (picture.points[pixel], picture.normals[pixel]);
         let status = picture.statuses[pixel];
         let head = [column.to_string(), row.to_string(), status_name(status).to_owned()];
-        let numbers = [picture.depth[pixel], point.x, point.y, point.z, normal.x, normal.y, normal.z];
-        let numbers = if status == Status::Unfinished { [f64::NAN; 7] } else { numbers };
-        write_row(writer, head.into_iter().chain(numbers.map(digits)))?;
+        let mut numbers = [picture.depth[pixel], point.x, point.y, point.z].map(digits).to_vec();
+        numbers.extend(<[f32; 3]>::from(normal).map(digits));
+        if status == Status::Unfinished {
+            numbers.fill(digits(f64::NAN));
+        }
+        write_row(writer, head.into_iter().chain(numbers))?;
     }
     Ok(())
 }

@@ -6,6 +6,7 @@
 #[cfg(test)]
 mod property;
 
+use std::fmt::{Display, LowerExp};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -250,9 +251,9 @@ where
 }
 
 /// The shortest digits that read back to the same float; `nan`, `inf` and `-inf` for what has no digits.
-pub(crate) fn digits(value: f64) -> String {
-    let magnitude = value.abs();
-    if value.is_nan() {
+pub(crate) fn digits<T: Copy + Into<f64> + Display + LowerExp>(value: T) -> String {
+    let magnitude = value.into().abs();
+    if magnitude.is_nan() {
         "nan".to_owned()
     } else if magnitude != 0.0 && !(1e-5..1e16).contains(&magnitude) && magnitude.is_finite() {
         format!("{value:e}")

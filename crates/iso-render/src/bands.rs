@@ -3,7 +3,7 @@
 use std::iter::repeat_with;
 use std::sync::Mutex;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use iso_grid::Outcome;
 
 use crate::{Picture, Status};
@@ -12,7 +12,7 @@ use crate::{Picture, Status};
 pub(crate) struct Band<'a> {
     pub(crate) color: &'a mut [[u8; 3]],
     pub(crate) depth: &'a mut [f64],
-    pub(crate) normals: &'a mut [DVec3],
+    pub(crate) normals: &'a mut [Vec3],
     pub(crate) points: &'a mut [DVec3],
     pub(crate) statuses: &'a mut [Status],
     pub(crate) outcomes: &'a mut [Outcome],

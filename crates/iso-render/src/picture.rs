@@ -1,6 +1,6 @@
 //! Pictures: what was found, pixel by pixel.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use iso_grid::{Counters, Outcome};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -105,8 +105,9 @@ pub struct Picture {
     pub color: Layer<[u8; 3]>,
     /// The distance t along each ray; NaN where nothing was found, −∞ where pixels are unfinished.
     pub depth: Layer<f64>,
-    /// Unit normals towards larger F; NaN where nothing was found, zero where pixels are unfinished.
-    pub normals: Layer<DVec3>,
+    /// Unit normals towards larger F, each coordinate rounded to single precision, as files hold them, for what takes longest on simple
+    /// surfaces is to write them; NaN where nothing was found, zero where pixels are unfinished.
+    pub normals: Layer<Vec3>,
     /// Points of the surface; NaN where nothing was found or pixels are unfinished.
     pub points: Layer<DVec3>,
     /// The status of each pixel.

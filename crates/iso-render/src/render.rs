@@ -3,16 +3,16 @@
 use std::sync::Mutex;
 use std::time::Duration;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use iso_expr::CompileError;
-use iso_grid::{Counters, Outcome, Ray, Surface, Tracer, Workspace, normals};
+use iso_grid::{Counters, Outcome, Surface, Tracer, Workspace, normals};
 use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::bands::Band;
 use crate::clock::Stopwatch;
 use crate::color::srgb_from_color;
-use crate::{Camera, Layers, Pass, Picture, Plan, Shading, Size, Status, StatusCounts};
+use crate::{Camera, Pass, Picture, Plan, Shading, Size, Status, StatusCounts};
 
 /// What a picture shows, and how its rays are followed.
 #[derive(Clone, Copy)]
@@ -80,7 +80,9 @@ pub fn render_over(
     tiles(size).into_par_iter().try_for_each_init(Tile::default, |tile, area| {
         tile.render(scene, size, area)?;
         let band = &bands[(area.row / TILE) as usize];
-        tile.put(&mut band.lock().expect("no thread panics while it holds a band"), size);
+        let mut band = band.lock().expect("no thread panics while it holds a band");
+        tile.put(&mut band, scene.camera, size);
+        drop(band);
         if tile.content != Content::Unfinished {
             let mut work = work.lock().expect("no thread panics while it holds the sums");
             work.add(tile);
@@ -132,14 +134,14 @@ enum Content {
 /// What stands for a pixel of which there is nothing to say.
 struct Mark {
     depth: f64,
-    normal: DVec3,
+    normal: Vec3,
     status: Status,
 }
 
 impl Mark {
-    const NOTHING: Self = Self { depth: f64::NAN, normal: DVec3::NAN, status: Status::Miss };
+    const NOTHING: Self = Self { depth: f64::NAN, normal: Vec3::NAN, status: Status::Miss };
     const UNFINISHED: Self =
-        Self { depth: f64::NEG_INFINITY, normal: DVec3::ZERO, status: Status::Unfinished };
+        Self { depth: f64::NEG_INFINITY, normal: Vec3::ZERO, status: Status::Unfinished };
 }
 
 /// A thread's part of the picture, rows from top to bottom: one tile after the other.
@@ -149,12 +151,9 @@ struct Tile {
     area: Area,
     content: Content,
     outcomes: Vec<Outcome>,
-    /// The layers that the picture keeps, and the normals it is shaded by.
+    /// Empty when there is no need of them.
     color: Vec<[u8; 3]>,
-    depth: Vec<f64>,
     normals: Vec<DVec3>,
-    points: Vec<DVec3>,
-    statuses: Vec<Status>,
     counts: StatusCounts,
     trace: Duration,
     shade: Duration,
@@ -187,7 +186,7 @@ impl Tile {
         if scene.plan.runs(Pass::Shade) {
             self.shade(scene.shading, rays, size);
         }
-        self.note(scene.plan.layers(), rays);
+        self.count();
         self.shade = watch.lap();
         Ok(())
     }
@@ -210,51 +209,43 @@ impl Tile {
         }
     }
 
-    /// Takes from the outcomes what `layers` show.
-    fn note(&mut self, layers: Layers, rays: iso_grid::Tile<'_>) {
-        let outcomes = &self.outcomes;
+    /// Counts the pixels by status.
+    fn count(&mut self) {
         self.counts = StatusCounts::default();
         if self.content == Content::Nothing {
-            self.counts.miss = outcomes.len() as u64;
-            return;
-        }
-        outcomes.iter().for_each(|outcome| self.counts.count(Status::from(outcome)));
-        let founds = || outcomes.iter().map(found);
-        if layers.depth {
-            self.depth.clear();
-            self.depth.extend(founds().map(|t| t.unwrap_or(f64::NAN)));
-        }
-        if layers.points {
-            self.points.clear();
-            let point = |(t, ray): (Option<f64>, Ray)| t.map_or(DVec3::NAN, |t| ray.at(t));
-            self.points.extend(founds().zip(rays.rays()).map(point));
-        }
-        if layers.statuses {
-            self.statuses.clear();
-            self.statuses.extend(outcomes.iter().map(Status::from));
+            self.counts.miss = self.outcomes.len() as u64;
+        } else {
+            self.outcomes.iter().for_each(|outcome| self.counts.count(Status::from(outcome)));
         }
     }
 }
 
 impl Tile {
     /// Puts the layers in their place in the band that holds the tile.
-    fn put(&self, band: &mut Band<'_>, size: Size) {
+    fn put(&self, band: &mut Band<'_>, camera: &Camera, size: Size) {
+        let Self { color, normals, outcomes, area, .. } = self;
         match self.content {
             Content::Unfinished => {
                 self.fill_layer(Picture::UNFINISHED, band.color, size);
                 self.fill(&Mark::UNFINISHED, band, size);
             }
             Content::Nothing => {
-                self.put_layer(&self.color, band.color, size);
+                self.put_layer(band.color, size, |place| color[place]);
                 self.fill(&Mark::NOTHING, band, size);
             }
             Content::Found => {
-                self.put_layer(&self.color, band.color, size);
-                self.put_layer(&self.depth, band.depth, size);
-                self.put_layer(&self.normals, band.normals, size);
-                self.put_layer(&self.points, band.points, size);
-                self.put_layer(&self.statuses, band.statuses, size);
-                self.put_layer(&self.outcomes, band.outcomes, size);
+                let point = |place: usize, t| {
+                    let (column, row) = (place as u32 % area.width, place as u32 / area.width);
+                    camera.ray(area.column + column, area.row + row).at(t)
+                };
+                self.put_layer(band.color, size, |place| color[place]);
+                self.put_layer(band.depth, size, |place| found(&outcomes[place]).unwrap_or(f64::NAN));
+                self.put_layer(band.normals, size, |place| normals[place].as_vec3());
+                self.put_layer(band.points, size, |place| {
+                    found(&outcomes[place]).map_or(DVec3::NAN, |t| point(place, t))
+                });
+                self.put_layer(band.statuses, size, |place| Status::from(&outcomes[place]));
+                self.put_layer(band.outcomes, size, |place| outcomes[place]);
             }
         }
     }
@@ -268,11 +259,11 @@ impl Tile {
         self.fill_layer(Outcome::Miss, band.outcomes, size);
     }
 
-    /// Copies one layer, if the picture keeps it.
-    fn put_layer<T: Copy>(&self, pixels: &[T], layer: &mut [T], size: Size) {
-        let rows = self.rows(layer, size);
-        for (pixels, row) in pixels.chunks_exact(self.area.width as usize).zip(rows) {
-            row.copy_from_slice(pixels);
+    /// Puts what is known of each of the tile's pixels into one layer, if the picture keeps it.
+    fn put_layer<T>(&self, layer: &mut [T], size: Size, pixel: impl Fn(usize) -> T) {
+        for (line, row) in self.rows(layer, size).enumerate() {
+            let first = line * row.len();
+            row.iter_mut().enumerate().for_each(|(column, place)| *place = pixel(first + column));
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use iso_expr::{Ast, Axis, Interpreter, Program};
 use iso_grid::{Certified, GridSettings, Kernel, Method, Region, RootFinding, Surface};
 use iso_render::{
@@ -64,8 +64,12 @@ fn folded(plan: &Plan) -> Vec<Given> {
     plan.constants().iter().filter(|given| given.taken).map(|given| given.subject).collect()
 }
 
-fn bits(vectors: &[DVec3]) -> Vec<[u64; 3]> {
-    vectors.iter().map(|vector| vector.to_array().map(f64::to_bits)).collect()
+fn bits(points: &[DVec3]) -> Vec<[u64; 3]> {
+    points.iter().map(|point| point.to_array().map(f64::to_bits)).collect()
+}
+
+fn bits_of_normals(normals: &[Vec3]) -> Vec<[u32; 3]> {
+    normals.iter().map(|normal| normal.to_array().map(f32::to_bits)).collect()
 }
 
 #[test]
@@ -103,7 +107,10 @@ fn layers_left_out_are_not_computed_and_change_no_other() {
             assert_eq!(*picture.color, all.color[..full(layers.color)], "{method:?} {layers:?}");
             let depths = |depths: &[f64]| depths.iter().map(|t| t.to_bits()).collect::<Vec<_>>();
             assert_eq!(depths(&picture.depth), depths(&all.depth[..full(layers.depth)]));
-            assert_eq!(bits(&picture.normals), bits(&all.normals[..full(layers.normals)]));
+            assert_eq!(
+                bits_of_normals(&picture.normals),
+                bits_of_normals(&all.normals[..full(layers.normals)])
+            );
             assert_eq!(bits(&picture.points), bits(&all.points[..full(layers.points)]));
             assert_eq!(picture.statuses, all.statuses[..full(layers.statuses)]);
             assert_eq!(picture.outcomes, all.outcomes[..full(layers.outcomes)]);
@@ -144,7 +151,7 @@ fn an_argument_that_is_not_taken_is_not_cut_along() {
         let [(picture, _), (other, _)] =
             [(&flat, &plans[0]), (&full, &plans[1])].map(|(program, plan)| draw(program, plan));
         assert_eq!(bits(&picture.points), bits(&other.points), "{method:?}");
-        assert_eq!(bits(&picture.normals), bits(&other.normals), "{method:?}");
+        assert_eq!(bits_of_normals(&picture.normals), bits_of_normals(&other.normals), "{method:?}");
         assert_eq!(picture.statuses, other.statuses, "{method:?}");
     }
 }

@@ -1,6 +1,6 @@
 //! What the pixels of a picture are worth, beside what is proven of them.
 
-use iso_grid::{Ray, Surface};
+use iso_grid::{Ray, Surface, Workspace};
 use iso_render::Picture;
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::flags::EngineName;
 use crate::measurement::Subject;
 
-/// Judges a picture pixel by pixel. Both pictures have the layers `color`, `normals` and `outcomes`.
+/// Judges a picture pixel by pixel. Both pictures have the layers `color` and `outcomes`.
 pub(crate) fn verdicts(
     subject: &Subject,
     proven: &Picture,
@@ -22,12 +22,10 @@ pub(crate) fn verdicts(
         .map(|(column, row)| subject.camera.ray(column, row))
         .collect();
     let surface = Surface::new(engine(EngineName::Jit)?, subject.program.clone());
-    Ok(compare(&surface, &rays, &answers(proven), &answers(picture))?)
-}
-
-/// The answers that a picture with the layers `outcomes` and `normals` holds.
-fn answers(picture: &Picture) -> Answers {
-    Answers { outcomes: picture.outcomes.clone(), normals: picture.normals.to_vec() }
+    let mut workspace = Workspace::default();
+    let mut answers =
+        |picture: &Picture| Answers::new(&surface, &mut workspace, &rays, picture.outcomes.clone());
+    Ok(compare(&surface, &rays, &answers(proven)?, &answers(picture)?)?)
 }
 
 /// Pixels by verdict, and how far right ones are from what is proven.

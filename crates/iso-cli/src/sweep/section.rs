@@ -90,7 +90,7 @@ struct Measured {
 }
 
 /// What is kept of pictures that are judged.
-const JUDGED: Layers = Layers { normals: true, outcomes: true, ..Layers::COLOR };
+const JUDGED: Layers = Layers { outcomes: true, ..Layers::COLOR };
 
 impl<'a> Study<'a> {
     pub(super) fn new(case: &'a Case, settings: &'a [Setting]) -> Result<Self, Failure> {

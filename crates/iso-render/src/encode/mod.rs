@@ -37,7 +37,7 @@ pub enum EncodeError {
 
 #[cfg(test)]
 mod testing {
-    use glam::DVec3;
+    use glam::Vec3;
 
     use crate::{Layers, Picture, Size};
 
@@ -49,7 +49,7 @@ mod testing {
         picture.color = (0..6).map(|pixel| [pixel, 40 * pixel, 255 - pixel]).collect();
         picture.depth = vec![f64::NAN; 6].into();
         picture.depth[4] = 1.25;
-        picture.normals[4] = DVec3::new(0.0, -0.6, 0.8);
+        picture.normals[4] = Vec3::new(0.0, -0.6, 0.8);
         picture
     }
 }

@@ -31,8 +31,7 @@ impl Picture {
             .with_channel("N.Y")
             .with_channel("N.Z")
             .with_pixel_fn(|position: Vec2<usize>| {
-                let normal = self.normals[self.pixel(position)].as_vec3();
-                (normal.x, normal.y, normal.z)
+                <(f32, f32, f32)>::from(self.normals[self.pixel(position)])
             });
         Ok(Image::from_channels(self.dimensions(), channels).write().non_parallel().to_buffered(writer)?)
     }
