@@ -70,7 +70,8 @@ pub(crate) unsafe extern "C" fn extend_to_both(function: elementary::InPlace, pa
     let [operand, sine, cosine] = unsafe { &mut *pairs };
     let mut ends = [0.0; elementary::WIDTH];
     for lane in 0..2 {
-        (ends[lane], ends[2 + lane]) = (operand.lo[lane], -operand.minus_hi[lane]);
+        let [lo, hi] = [operand.lo[lane], -operand.minus_hi[lane]];
+        [ends[lane], ends[2 + lane], ends[4 + lane], ends[6 + lane]] = [lo, hi, lo, hi];
     }
     // SAFETY: this processor has the features that the function was compiled for.
     unsafe { function(&mut ends) };

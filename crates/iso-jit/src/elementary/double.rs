@@ -22,11 +22,25 @@ impl Double {
         Self { hi, lo: (a - (hi - from_b)) + (b - from_b) }
     }
 
+    /// a + b, exactly, where a is zero, no smaller than b, or a multiple of b's last place (Dekker).
+    #[inline(always)]
+    pub(super) fn ordered_sum(a: f64, b: f64) -> Self {
+        let hi = a + b;
+        Self { hi, lo: b - (hi - a) }
+    }
+
     /// a·b, exactly where nothing underflows.
     #[inline(always)]
     pub(super) fn product(a: f64, b: f64) -> Self {
         let hi = a * b;
         Self { hi, lo: a.mul_add(b, -hi) }
+    }
+
+    /// With the other sign where the highest bit of a word is set.
+    #[inline(always)]
+    pub(super) fn signed(self, sign: u64) -> Self {
+        let [hi, lo] = [self.hi, self.lo].map(|a| f64::from_bits(a.to_bits() ^ sign));
+        Self { hi, lo }
     }
 }
 
@@ -50,6 +64,18 @@ impl Double {
         let second = rest.hi / divisor;
         let rest = rest.plus(product(-second, divisor));
         Self::sum(first, second).plus(Self::from(rest.hi / divisor))
+    }
+
+    /// The sums of aⁿ/n! over the n that leave 0, 1, 2 and 3 when divided by four, for a up to π/2.
+    pub(super) const fn series(self) -> [Self; 4] {
+        let (mut term, mut sums) = (Self::from(1.0), [Self::ZERO; 4]);
+        let mut power = 0;
+        while power < 32 {
+            sums[power % 4] = sums[power % 4].plus(term);
+            power += 1;
+            term = term.times(self).over(power as f64);
+        }
+        sums
     }
 
     pub(super) const fn negated(self) -> Self {

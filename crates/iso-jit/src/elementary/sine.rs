@@ -1,45 +1,30 @@
 //! Sine and cosine.
 
 use super::double::Double;
-use super::{Approximation, nearest_integer};
+use super::{Approximation, ENTRIES, Table, nearest_multiple};
 
-/// Steps of the table around the circle.
-const STEPS: usize = 256;
+const STEPS_PER_RADIAN: f64 = 10.185_916_357_881_302;
 
-/// A step, π/128, in three parts. The first two have 33 bits, so that up to 2²⁰ times each is exact.
-const STEP: [f64; 3] = [0.024_543_692_605_220_713, 9.495_469_541_099_947e-13, 3.159_791_013_743_673e-23];
+/// A step, π/32, in three parts. The first two have 35 bits, so that up to 2¹⁸ times each is exact.
+const STEP: [f64; 3] = [0.098_174_770_424_520_83, 1.602_090_094_739_972_4e-13, 6.601_874_416_867_142e-25];
 
-const STEPS_PER_RADIAN: f64 = 40.743_665_431_525_21;
-
-/// Fewer than 2²⁰ steps.
+/// Fewer than 2¹⁸ steps.
 const LARGEST: f64 = 25_000.0;
 
-/// Sine and cosine at every step.
-static WAVE: [[Double; 2]; STEPS] = wave();
+/// Sine and cosine at every step of a quarter, each as hi and lo.
+pub(super) static WAVE: Table<4> = wave();
 
+/// The sine of x + quarters·π/2.
 #[inline(always)]
-pub(super) fn sin(x: f64) -> Approximation {
-    let near = Near::of(x, 0);
-    near.turned(near.sine, near.cosine)
-}
-
-#[inline(always)]
-pub(super) fn cos(x: f64) -> Approximation {
-    let near = Near::of(x, 0);
-    near.turned(near.cosine, near.sine.negated())
-}
-
-/// The sine, or the cosine.
-#[inline(always)]
-pub(super) fn sin_or_cos(is_sine: bool, x: f64) -> Approximation {
-    let near = Near::of(x, if is_sine { 0 } else { STEPS / 4 });
+pub(super) fn sin(x: f64, entry: [f64; 4], quarters: u64) -> Approximation {
+    let near = Near::of(x, entry, quarters);
     near.turned(near.sine, near.cosine)
 }
 
 /// The sine and the cosine, for little more than one of them.
 #[inline(always)]
-pub(super) fn sin_and_cos(x: f64) -> [Approximation; 2] {
-    let near = Near::of(x, 0);
+pub(super) fn sin_and_cos(x: f64, entry: [f64; 4]) -> [Approximation; 2] {
+    let near = Near::of(x, entry, 0);
     [near.turned(near.sine, near.cosine), near.turned(near.cosine, near.sine.negated())]
 }
 
@@ -49,80 +34,83 @@ struct Near {
     /// Sine and cosine of the nearest step.
     sine: Double,
     cosine: Double,
-    /// The rest, and its square.
+    /// The rest r, (sin r − r)/r, and cos r − 1 + r²/2.
     rest: Double,
-    square: f64,
-    /// (sin r − r)/r³ and (cos r − 1)/r² for the rest r.
     sine_tail: f64,
     cosine_tail: f64,
     is_covered: bool,
 }
 
 impl Near {
-    /// Of x + shift·π/128.
+    /// Of x + quarters·π/2.
     #[inline(always)]
-    fn of(x: f64, shift: usize) -> Self {
-        let (steps, index) = nearest_integer(x * STEPS_PER_RADIAN);
-        let [sine, cosine] = WAVE[(index as usize).wrapping_add(shift) % STEPS];
+    fn of(x: f64, [sine, sine_lo, cosine, cosine_lo]: [f64; 4], quarters: u64) -> Self {
+        let (steps, index) = nearest_multiple(x, STEPS_PER_RADIAN);
+        let in_quarter = [Double { hi: sine, lo: sine_lo }, Double { hi: cosine, lo: cosine_lo }];
+        let [sine, cosine] = turned_by(in_quarter, (index / ENTRIES as u64).wrapping_add(quarters));
 
-        // Exact: a multiple of x's last place or of 2⁻³⁸, and less than 2⁻⁶.
+        // Exact: a multiple of x's last place or of 2⁻³⁸, and less than 2⁻⁴. The last place of what is taken off next is finer.
         let rest = (-steps).mul_add(STEP[0], x);
-        let rest = Double::sum(rest, -(steps * STEP[1]));
-        let rest = Double::sum(rest.hi, (-steps).mul_add(STEP[2], rest.lo));
-        let r = rest.hi;
-        let square = (r + r).mul_add(rest.lo, r * r);
+        let rest = Double::ordered_sum(rest, -(steps * STEP[1]));
+        let rest = Double { hi: rest.hi, lo: (-steps).mul_add(STEP[2], rest.lo) };
 
-        let sine_tail = square.mul_add(square.mul_add(-1.0 / 5040.0, 1.0 / 120.0), -1.0 / 6.0);
-        let cosine_tail =
-            square.mul_add(square.mul_add(square.mul_add(1.0 / 40320.0, -1.0 / 720.0), 1.0 / 24.0), -0.5);
-        Self { sine, cosine, rest, square, sine_tail, cosine_tail, is_covered: x.abs() < LARGEST }
+        let square = rest.hi * rest.hi;
+        let sine_tail = square.mul_add(square.mul_add(1.0 / 362_880.0, -1.0 / 5040.0), 1.0 / 120.0);
+        let sine_tail = square * square.mul_add(sine_tail, -1.0 / 6.0);
+        let cosine_tail = square.mul_add(square.mul_add(1.0 / 40320.0, -1.0 / 720.0), 1.0 / 24.0);
+        let cosine_tail = square * square * cosine_tail;
+        Self { sine, cosine, rest, sine_tail, cosine_tail, is_covered: x.abs() < LARGEST }
     }
 
-    /// The sine of the sum of the rest and an angle with this sine and cosine: S·cos r + C·sin r, with r at most π/256 < 2⁻⁶·³.
+    /// The sine of the sum of the rest and an angle with this sine and cosine: S·cos r + C·sin r, with r at most π/64 < 2⁻⁴·³. It is
+    /// summed as S + r·(C − S·r/2) and what remains of both series, for the slope in brackets is known with its rounding error.
     ///
     /// Errors, as parts of the result, which is at least S/2 (at S = 0 only those of sin r count):
     ///
-    /// - r²'s 2·2⁻⁵³, that of cos r's polynomial 2⁻⁵³ and that of their product 2⁻⁵³, times r²/2 < 2⁻¹³·⁷ and 2: 2⁻⁶³·⁷;
-    /// - sums of terms below r²/2, at most three times 2⁻⁵³ of them, half of that being 2⁻⁵⁴: 2⁻⁶⁴;
-    /// - the series cut off: 2⁻⁶⁹ of sin r after r⁷, 2⁻⁸⁵ of cos r after r⁸;
-    /// - r's own error, 2⁻¹⁰³, from k < 2²⁰ steps, absolute.
+    /// - of C·(sin r − r), which is at most 2⁻¹¹·²: from r², its factor, their product and C times that, four times 2⁻⁵³; from
+    ///   sums of terms below it, three times 2⁻⁵³: 2⁻⁶¹·⁴ together;
+    /// - what r's low part, at most 2⁻⁵⁸, takes of it: 2⁻⁶³·³;
+    /// - the series cut off: 2⁻⁶⁸ of sin r after r⁹, 2⁻⁶⁴ of cos r after r⁸;
+    /// - r's own error, 2⁻¹¹⁰, from k < 2¹⁸ steps, absolute.
     ///
-    /// Together 2⁻⁶²·⁸; the greatest that was seen, in 50,000 values beside ones of 250 bits, is 2⁻⁶⁴·⁸.
+    /// Together 2⁻⁶⁰·⁹; the greatest that was seen, in 200,000 values beside ones of 300 bits, is 2⁻⁶²·¹.
     #[inline(always)]
     fn turned(self, sine: Double, cosine: Double) -> Approximation {
-        let Self { rest, square, sine_tail, cosine_tail, is_covered, .. } = self;
-        let turned = Double::product(cosine.hi, rest.hi);
-        let Double { hi, lo } = Double::sum(sine.hi, turned.hi);
-        let sine_rest = (rest.hi * square).mul_add(sine_tail, rest.lo);
-        let small = (sine.lo + turned.lo) + cosine.lo.mul_add(rest.hi, cosine.hi * sine_rest);
-        let lo = lo + sine.hi.mul_add(square * cosine_tail, small);
-        let error = if is_covered { hi.abs() * 2f64.powi(-62) + 2f64.powi(-98) } else { f64::INFINITY };
+        let Self { rest, sine_tail, cosine_tail, is_covered, .. } = self;
+        let half = 0.5 * rest.hi;
+        let slope = (-sine.hi).mul_add(half, cosine.hi);
+        let slope_lo = (-sine.hi).mul_add(half, cosine.hi - slope) + cosine.lo;
+        let turned = Double::product(slope, rest.hi);
+        let Double { hi, lo } = Double::ordered_sum(sine.hi, turned.hi);
+
+        // r's low part counts by the derivative, C − S·r.
+        let small = (-sine.hi).mul_add(half, slope).mul_add(rest.lo, sine.lo + turned.lo);
+        let small = sine.hi.mul_add(cosine_tail, small);
+        let lo = lo + cosine.hi.mul_add(sine_tail, slope_lo).mul_add(rest.hi, small);
+        let error = if is_covered { hi.abs() * 2f64.powi(-60) + 2f64.powi(-98) } else { f64::INFINITY };
         Approximation { hi, lo, error }
     }
 }
 
-/// Fills the first quarter from the series; the others turn it.
-const fn wave() -> [[Double; 2]; STEPS] {
+/// The sine and the cosine of an angle after so many quarters of a turn.
+#[inline(always)]
+fn turned_by([sine, cosine]: [Double; 2], quarters: u64) -> [Double; 2] {
+    let is_odd = quarters & 1 == 1;
+    let (sine, cosine) = if is_odd { (cosine, sine) } else { (sine, cosine) };
+    let sign = quarters << 62 & 1 << 63;
+    [sine.signed(sign), cosine.signed(sign ^ quarters << 63)]
+}
+
+const fn wave() -> Table<4> {
     const PI: Double = Double { hi: std::f64::consts::PI, lo: 1.224_646_799_147_353_2e-16 };
-    let mut wave = [[Double::ZERO; 2]; STEPS];
+    let mut columns = [[0.0; ENTRIES]; 4];
     let mut step = 0;
-    while step < STEPS / 4 {
-        let angle = PI.times(Double::from(step as f64 / 128.0));
-        // The terms with even powers sum to the cosine, those with odd ones to the sine.
-        let (mut term, mut sums) = (Double::from(1.0), [Double::ZERO; 2]);
-        let mut power = 0;
-        while power < 32 {
-            let signed = if power % 4 < 2 { term } else { term.negated() };
-            sums[power % 2] = sums[power % 2].plus(signed);
-            power += 1;
-            term = term.times(angle).over(power as f64);
-        }
-        let [cosine, sine] = sums;
-        wave[step] = [sine, cosine];
-        wave[step + STEPS / 4] = [cosine, sine.negated()];
-        wave[step + STEPS / 2] = [sine.negated(), cosine.negated()];
-        wave[step + 3 * STEPS / 4] = [cosine.negated(), sine];
+    while step < ENTRIES {
+        let [a, b, c, d] = PI.times(Double::from(step as f64 / (2 * ENTRIES) as f64)).series();
+        let (sine, cosine) = (b.plus(d.negated()), a.plus(c.negated()));
+        [columns[0][step], columns[1][step]] = [sine.hi, sine.lo];
+        [columns[2][step], columns[3][step]] = [cosine.hi, cosine.lo];
         step += 1;
     }
-    wave
+    Table { columns, steps_per_unit: STEPS_PER_RADIAN }
 }
