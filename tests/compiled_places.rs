@@ -47,7 +47,7 @@ fn pictures(tracer: &Certified, count: usize, workspace: &mut Workspace) -> Vec<
     let first = 0.5 - 0.5 * SIDE as f64;
     let picture = |_| {
         let mut outcomes = vec![Outcome::Miss; SIDE * SIDE];
-        tracer.trace_tile(workspace, Tile::of(&raster, [first, first], SIDE, SIDE), &mut outcomes);
+        tracer.trace_tile(workspace, Tile::of(&raster, [first, first], SIDE, SIDE), &mut outcomes, None);
         outcomes
     };
     (0..count).map(picture).collect()

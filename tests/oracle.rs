@@ -85,7 +85,7 @@ fn trace_pictures(
     for side in SIDES {
         let (tile, other_rays) = rays.split_at(rays.len().min(side * side));
         let (ends, other_outcomes) = outcomes.split_at_mut(tile.len());
-        tracer.trace_tile(workspace, Tile::listed(tile, side), ends);
+        tracer.trace_tile(workspace, Tile::listed(tile, side), ends, None);
         (rays, outcomes) = (other_rays, other_outcomes);
     }
     assert!(rays.is_empty(), "a scene has three pictures");

@@ -20,7 +20,10 @@ fn main() {
         let subject = Subject::named(name).expect("measured formulas are among the benchmarks' surfaces");
         let value = subject.program().expect("the surface's formula is right");
         let gradient = value.with_gradient().simplified();
-        write_values(&mut code, &format!("{name}_gradient"), &gradient.with_powers_expanded());
+        let slope = value.with_slope().simplified();
+        write_values(&mut code, &format!("{name}_gradient"), "", &gradient.with_powers_expanded());
+        let direction = ", a3: f64, a4: f64, a5: f64";
+        write_values(&mut code, &format!("{name}_slope"), direction, &slope.with_powers_expanded());
         write_boxes(&mut code, &format!("{name}_box"), &value);
         write_boxes(&mut code, &format!("{name}_box_gradient"), &gradient);
     }
@@ -28,13 +31,13 @@ fn main() {
     std::fs::write(folder.join("straight_line.rs"), code).expect("cargo's folder can be written to");
 }
 
-/// Writes a function of doubles that gives the program's outputs.
-fn write_values(code: &mut String, name: &str, program: &Program) {
+/// Writes a function of doubles, x, y, z and others, that gives the program's outputs.
+fn write_values(code: &mut String, name: &str, others: &str, program: &Program) {
     let outputs = program.outputs().len();
     let write = |code: &mut String| -> std::fmt::Result {
         writeln!(
             code,
-            "#[inline(always)]\npub(crate) fn {name}(x: f64, y: f64, z: f64) -> [f64; {outputs}] {{"
+            "#[inline(always)]\npub(crate) fn {name}(x: f64, y: f64, z: f64{others}) -> [f64; {outputs}] {{"
         )?;
         for (id, node) in program.iter() {
             if let Node::Apply(operation, _) = node {

@@ -23,7 +23,7 @@ fn every_stage_is_shown() {
 fn the_plan_of_a_depth_map_has_no_normals_and_no_grid() {
     let case = Case::new();
     let picture = [PAPER, "--ortho", "--depth", "depth.exr", "--json"];
-    for (method, kernels) in [("certified", 3), ("direct", 1)] {
+    for (method, kernels) in [("certified", 4), ("direct", 1)] {
         let flags = [&picture[..], &["--method", method, "--box", "-1.5,1.5"]].concat();
         let json = case.run(&[&["explain"][..], &flags].concat()).exits(0).json();
         assert!(case.names().is_empty(), "nothing is drawn");

@@ -66,7 +66,7 @@ fn the_report_has_its_keys() {
             ["hit", "touch", "miss", "undecided"].map(|status| json["pixels"][status].as_u64().unwrap());
         assert_eq!(pixels.iter().sum::<u64>(), 48 * 32);
         assert_eq!(json["counters"]["rays"], 48 * 32);
-        let kernels = if method == "certified" { 4 } else { 3 };
+        let kernels = if method == "certified" { 5 } else { 3 };
         assert_eq!(json["plan"]["kernels_compiled"], kernels, "{method}");
     }
 }
@@ -113,7 +113,7 @@ fn depths_normals_and_points_are_written() {
             "hit" => {
                 let radius = numbers[1].hypot(numbers[2]).hypot(numbers[3]);
                 assert!((radius - 1.0).abs() < 1e-9, "{line}");
-                assert!((0..3).all(|axis| (numbers[4 + axis] - numbers[1 + axis]).abs() < 1e-9), "{line}");
+                assert!((0..3).all(|axis| (numbers[4 + axis] - numbers[1 + axis]).abs() < 1e-7), "{line}");
                 hits += 1;
             }
             "miss" => assert!(numbers.iter().all(|number| number.is_nan()), "{line}"),

@@ -11,6 +11,7 @@ pub struct Batch {
     lo: [Vec<f64>; 3],
     hi: [Vec<f64>; 3],
     forms: Vec<Vec<f64>>,
+    direction: [Vec<f64>; 3],
 }
 
 impl Batch {
@@ -31,13 +32,19 @@ impl Batch {
             [points[axis].clone(), part(0), part(1), part(2), vec![0.0; COUNT]]
         };
         let direction = [-0.5, -0.75, 0.375].map(|component| vec![component; COUNT]);
-        let forms = (0..3).flat_map(form).chain(direction).collect();
-        Self { lo: moved(-radius / 64.0), hi: moved(radius / 64.0), forms, points }
+        let forms = (0..3).flat_map(form).chain(direction.clone()).collect();
+        Self { direction, lo: moved(-radius / 64.0), hi: moved(radius / 64.0), forms, points }
     }
 
     /// The points.
     pub fn points(&self) -> [&[f64]; 3] {
         slices(&self.points)
+    }
+
+    /// The points, and a direction at each.
+    pub fn points_and_directions(&self) -> [&[f64]; 6] {
+        let ([x, y, z], [dx, dy, dz]) = (slices(&self.points), slices(&self.direction));
+        [x, y, z, dx, dy, dz]
     }
 
     /// Affine forms of sets of points that lie askew around the points, part by part, and a direction.

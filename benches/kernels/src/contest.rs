@@ -9,7 +9,7 @@ use iso_expr::{
 use iso_jit::Jit;
 
 use crate::batch::{Batch, COUNT};
-use crate::native::{BoxSweep, Native, Sweep, has_avx512};
+use crate::native::{BoxSweep, Native, SlopeSweep, Sweep, has_avx512};
 
 /// What is evaluated, over what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,6 +20,8 @@ pub enum Discipline {
     Point,
     /// F over a batch of points.
     Batch,
+    /// F and its slope along a direction over a batch of points.
+    BatchSlope,
     /// F and its gradient over a batch of points.
     BatchGradient,
     /// F over a batch of boxes.
@@ -34,10 +36,11 @@ pub enum Discipline {
 
 impl Discipline {
     /// All of them, from the least work to the most.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Function,
         Self::Point,
         Self::Batch,
+        Self::BatchSlope,
         Self::BatchGradient,
         Self::Boxes,
         Self::BoxesGradient,
@@ -51,6 +54,7 @@ impl Discipline {
             Self::Function => "function",
             Self::Point => "point",
             Self::Batch => "batch",
+            Self::BatchSlope => "batch+slope",
             Self::BatchGradient => "batch+gradient",
             Self::Boxes => "boxes",
             Self::BoxesGradient => "boxes+gradient",
@@ -63,6 +67,7 @@ impl Discipline {
     pub fn room(self) -> usize {
         match self {
             Self::Function | Self::Point | Self::Batch => COUNT,
+            Self::BatchSlope => 2 * COUNT,
             Self::BatchGradient => 4 * COUNT,
             Self::Boxes => 2 * COUNT,
             Self::BoxesGradient => 2 * 4 * COUNT,
@@ -93,6 +98,8 @@ impl<'a> Entry<'a> {
 pub struct Formula<'a> {
     /// F.
     pub value: &'a Program,
+    /// F and its slope along a direction.
+    pub slope: &'a Program,
     /// F and its gradient.
     pub gradient: &'a Program,
     /// The same in Rust.
@@ -137,6 +144,18 @@ impl<'a> Formula<'a> {
                     entries.push(Entry::new("rust avx512", sweep(wide, points)));
                 }
             }
+            Discipline::BatchSlope => {
+                let arguments = self.batch.points_and_directions();
+                for (name, engine) in engines {
+                    let kernel = engine.batch(self.slope)?;
+                    entries.push(Entry::new(name, batch_kernel(kernel, arguments.to_vec())));
+                }
+                let rust = |sweep: SlopeSweep| move |values: &mut [f64]| sweep(black_box(arguments), values);
+                entries.push(Entry::new("rust", rust(native.slopes)));
+                if has_avx512() {
+                    entries.push(Entry::new("rust avx512", rust(native.wide_slopes)));
+                }
+            }
             Discipline::Boxes | Discipline::BoxesGradient => {
                 let (program, rust) = match discipline {
                     Discipline::Boxes => (self.value, native.boxes),
@@ -152,7 +171,7 @@ impl<'a> Formula<'a> {
             Discipline::Forms | Discipline::ParallelForms => {
                 let forms = match discipline {
                     Discipline::Forms => self.gradient.with_forms(),
-                    _ => self.value.with_slope().simplified().with_forms(),
+                    _ => self.slope.with_forms(),
                 };
                 let program = forms.expect("the measured formulas have forms");
                 for (name, engine) in engines {

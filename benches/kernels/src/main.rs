@@ -35,9 +35,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     for native in &NATIVES {
         let subject = Subject::named(native.name).ok_or("a measured formula is not among the surfaces")?;
         let value = subject.program()?;
-        let gradient = value.with_gradient().simplified();
+        let (slope, gradient) = (value.with_slope().simplified(), value.with_gradient().simplified());
         let batch = Batch::within(subject.radius);
-        let formula = Formula { value: &value, gradient: &gradient, native, batch: &batch };
+        let formula = Formula { value: &value, slope: &slope, gradient: &gradient, native, batch: &batch };
         for discipline in Discipline::ALL {
             let entries = formula.entries(discipline)?;
             let measured = measure(native.name, discipline, entries)?;

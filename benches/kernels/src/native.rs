@@ -20,6 +20,9 @@ include!(concat!(env!("OUT_DIR"), "/straight_line.rs"));
 /// A kernel over batches: as the engines' kernels are, but a function alone.
 pub type Sweep = fn([&[f64]; 3], &mut [f64]);
 
+/// A kernel over batches of points and directions.
+pub type SlopeSweep = fn([&[f64]; 6], &mut [f64]);
+
 /// A kernel over boxes, writing lower and upper ends.
 pub type BoxSweep = fn(Boxes<'_>, lo: &mut [f64], hi: &mut [f64]);
 
@@ -43,10 +46,14 @@ pub struct Native {
     pub point: fn() -> Arc<dyn PointKernel>,
     /// F over a batch, in 128-bit lanes.
     pub values: Sweep,
+    /// F and its slope along a direction over a batch, in 128-bit lanes.
+    pub slopes: SlopeSweep,
     /// F and its gradient over a batch, in 128-bit lanes.
     pub gradients: Sweep,
     /// F over a batch, in 512-bit lanes; only to be called where [`has_avx512`].
     pub wide_values: Sweep,
+    /// F and its slope along a direction over a batch, in 512-bit lanes; only to be called where [`has_avx512`].
+    pub wide_slopes: SlopeSweep,
     /// F and its gradient over a batch, in 512-bit lanes; only to be called where [`has_avx512`].
     pub wide_gradients: Sweep,
     /// F over boxes, without decorations. `None` when Rust's intervals lack an operation.
@@ -62,13 +69,29 @@ pub fn has_avx512() -> bool {
 
 /// Loops over slices for processors with these features.
 macro_rules! sweeps {
-    ($features:literal, $value:path, $gradient:path) => {
+    ($features:literal, $value:path, $slope:path, $gradient:path) => {
         #[target_feature(enable = $features)]
         fn sweep_values(x: &[f64], y: &[f64], z: &[f64], values: &mut [f64]) {
             let count = x.len();
             let (y, z, values) = (&y[..count], &z[..count], &mut values[..count]);
             for point in 0..count {
                 values[point] = $value(x[point], y[point], z[point]);
+            }
+        }
+
+        #[target_feature(enable = $features)]
+        fn sweep_slopes(
+            [x, y, z]: [&[f64]; 3],
+            [dx, dy, dz]: [&[f64]; 3],
+            values: &mut [f64],
+            slopes: &mut [f64],
+        ) {
+            let count = x.len();
+            let (y, z, dx, dy, dz) = (&y[..count], &z[..count], &dx[..count], &dy[..count], &dz[..count]);
+            let (values, slopes) = (&mut values[..count], &mut slopes[..count]);
+            for point in 0..count {
+                [values[point], slopes[point]] =
+                    $slope(x[point], y[point], z[point], dx[point], dy[point], dz[point]);
             }
         }
 
@@ -97,6 +120,12 @@ macro_rules! sweeps {
             unsafe { sweep_values(x, y, z, values) }
         }
 
+        pub(crate) fn slopes([x, y, z, dx, dy, dz]: [&[f64]; 6], values: &mut [f64]) {
+            let (values, slopes) = values.split_at_mut(x.len());
+            // SAFETY: `Native` says which processors the function may be called on: those with the features.
+            unsafe { sweep_slopes([x, y, z], [dx, dy, dz], values, slopes) }
+        }
+
         pub(crate) fn gradients([x, y, z]: [&[f64]; 3], values: &mut [f64]) {
             let count = x.len();
             let (values, rest) = values.split_at_mut(count);
@@ -109,7 +138,7 @@ macro_rules! sweeps {
 }
 
 macro_rules! natives {
-    ($($name:ident, $gradient:ident, $boxes:ident, $gradient_boxes:ident;)*) => {
+    ($($name:ident, $slope:ident, $gradient:ident, $boxes:ident, $gradient_boxes:ident;)*) => {
         $(mod $name {
             use super::*;
 
@@ -120,12 +149,12 @@ macro_rules! natives {
 
             pub(super) mod narrow {
                 use super::*;
-                sweeps!("sse4.2", formulas::$name, $gradient);
+                sweeps!("sse4.2", formulas::$name, $slope, $gradient);
             }
 
             pub(super) mod wide {
                 use super::*;
-                sweeps!("avx512f,avx512dq", formulas::$name, $gradient);
+                sweeps!("avx512f,avx512dq", formulas::$name, $slope, $gradient);
             }
 
             pub(super) fn boxes(boxes: Boxes<'_>, lo: &mut [f64], hi: &mut [f64]) {
@@ -143,8 +172,10 @@ macro_rules! natives {
             value: $name::value,
             point: || Arc::new(Point(formulas::$name)),
             values: $name::narrow::values,
+            slopes: $name::narrow::slopes,
             gradients: $name::narrow::gradients,
             wide_values: $name::wide::values,
+            wide_slopes: $name::wide::slopes,
             wide_gradients: $name::wide::gradients,
             boxes: if $boxes.is_some() { Some($name::boxes) } else { None },
             gradient_boxes: if $gradient_boxes.is_some() { Some($name::gradient_boxes) } else { None },
@@ -153,12 +184,12 @@ macro_rules! natives {
 }
 
 natives! {
-    paper, paper_gradient, PAPER_BOX, PAPER_BOX_GRADIENT;
-    tanglecube, tanglecube_gradient, TANGLECUBE_BOX, TANGLECUBE_BOX_GRADIENT;
-    heart, heart_gradient, HEART_BOX, HEART_BOX_GRADIENT;
-    barth, barth_gradient, BARTH_BOX, BARTH_BOX_GRADIENT;
-    gyroid, gyroid_gradient, GYROID_BOX, GYROID_BOX_GRADIENT;
-    metaballs, metaballs_gradient, METABALLS_BOX, METABALLS_BOX_GRADIENT;
+    paper, paper_slope, paper_gradient, PAPER_BOX, PAPER_BOX_GRADIENT;
+    tanglecube, tanglecube_slope, tanglecube_gradient, TANGLECUBE_BOX, TANGLECUBE_BOX_GRADIENT;
+    heart, heart_slope, heart_gradient, HEART_BOX, HEART_BOX_GRADIENT;
+    barth, barth_slope, barth_gradient, BARTH_BOX, BARTH_BOX_GRADIENT;
+    gyroid, gyroid_slope, gyroid_gradient, GYROID_BOX, GYROID_BOX_GRADIENT;
+    metaballs, metaballs_slope, metaballs_gradient, METABALLS_BOX, METABALLS_BOX_GRADIENT;
 }
 
 /// Applies a function of intervals to every box.

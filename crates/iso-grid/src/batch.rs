@@ -13,6 +13,8 @@ pub(crate) struct PointBatch {
     x: Vec<f64>,
     y: Vec<f64>,
     z: Vec<f64>,
+    /// Of the ray at each point, for slopes.
+    directions: [Vec<f64>; 3],
     values: Vec<f64>,
 }
 
@@ -39,11 +41,12 @@ impl PointBatch {
 
     /// Room for so many rows of points in place of all others, coordinate by coordinate.
     pub(crate) fn rows(&mut self, count: usize) -> impl Iterator<Item = [&mut Row; 3]> {
-        let [x, y, z] = [&mut self.x, &mut self.y, &mut self.z].map(|coordinates| {
-            coordinates.resize(count * ROW, 0.0);
-            coordinates.as_chunks_mut().0.iter_mut()
-        });
-        x.zip(y).zip(z).map(|((x, y), z)| [x, y, z])
+        rows([&mut self.x, &mut self.y, &mut self.z], count)
+    }
+
+    /// The same for the directions of rays.
+    pub(crate) fn rows_of_directions(&mut self, count: usize) -> impl Iterator<Item = [&mut Row; 3]> {
+        rows(self.directions.each_mut(), count)
     }
 
     /// Adds the points of a ray at these places.
@@ -72,6 +75,25 @@ impl PointBatch {
         }
         &self.values
     }
+
+    /// F and its slope along the directions at all points, laid out in the same way.
+    pub(crate) fn slopes(&mut self, kernel: &dyn BatchKernel, scratch: &mut Scratch) -> &[f64] {
+        self.values.resize(2 * self.len(), f64::NAN);
+        if self.len() > 0 {
+            let [dx, dy, dz] = &self.directions;
+            kernel.evaluate(scratch, &[&self.x, &self.y, &self.z, dx, dy, dz], &mut self.values);
+        }
+        &self.values
+    }
+}
+
+/// Room for so many rows of vectors in place of all others, coordinate by coordinate.
+fn rows(vectors: [&mut Vec<f64>; 3], count: usize) -> impl Iterator<Item = [&mut Row; 3]> {
+    let [x, y, z] = vectors.map(|coordinates| {
+        coordinates.resize(count * ROW, 0.0);
+        coordinates.as_chunks_mut().0.iter_mut()
+    });
+    x.zip(y).zip(z).map(|((x, y), z)| [x, y, z])
 }
 
 /// An affine form: the numbers middle + ∑ slopeᵢ·eᵢ + r for the same eᵢ from −1 to 1, and |r| ≤ rest. Nothing is known where a part is

@@ -12,6 +12,8 @@ pub enum Kernel {
     Values,
     /// F − C and its gradient at points: [`Surface::gradients`](crate::Surface::gradients).
     Gradients,
+    /// F − C and its slope along a direction at points: [`Surface::slopes`](crate::Surface::slopes).
+    Slopes,
     /// F − C over boxes: [`Surface::value_enclosures`](crate::Surface::value_enclosures).
     ValueEnclosures,
     /// F − C and its gradient over boxes: [`Surface::gradient_enclosures`](crate::Surface::gradient_enclosures).
@@ -31,9 +33,10 @@ impl Kernel {
     pub(crate) const WITH_FORMS: usize = 100;
 
     /// All kernels.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Values,
         Self::Gradients,
+        Self::Slopes,
         Self::ValueEnclosures,
         Self::GradientEnclosures,
         Self::RoundingBounds,
@@ -59,7 +62,7 @@ impl Kernel {
             | Self::GradientEnclosures
             | Self::RoundingBounds
             | Self::HessianEnclosures => true,
-            Self::Values | Self::Gradients | Self::Forms | Self::ParallelForms => false,
+            Self::Values | Self::Gradients | Self::Slopes | Self::Forms | Self::ParallelForms => false,
         }
     }
 
@@ -73,7 +76,8 @@ impl Kernel {
         }
     }
 
-    /// Those that the method that proves what it says compiles ahead, whatever the rays. Forms depend on how rays spread.
+    /// Those that the method that proves what it says compiles ahead, whatever the rays. Slopes are for rays side by side, and forms depend
+    /// on how those spread.
     pub(crate) fn of_proofs(has_forms: bool) -> impl Iterator<Item = Self> {
         let all = [Self::Values, Self::ValueEnclosures, Self::GradientEnclosures];
         all.into_iter().filter(move |kernel| kernel.is_compiled_ahead(has_forms))
@@ -84,6 +88,7 @@ impl Kernel {
         match self {
             Self::Values => "values",
             Self::Gradients => "gradients",
+            Self::Slopes => "slopes",
             Self::ValueEnclosures => "value enclosures",
             Self::GradientEnclosures => "gradient enclosures",
             Self::RoundingBounds => "rounding bounds",

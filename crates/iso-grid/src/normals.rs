@@ -1,5 +1,7 @@
 //! Normals of the surface where rays meet it.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use iso_expr::{BatchKernel, CompileError, Scratch};
 use pulp::{Simd, WithSimd};
@@ -40,167 +42,160 @@ pub fn normals(
     outcomes: &[Outcome],
     normals: &mut [DVec3],
 ) -> Result<(), CompileError> {
+    normals.fill(DVec3::NAN);
+    other_normals(surface, tracer, workspace, tile, outcomes, normals)
+}
+
+/// Those [normals] that are not known yet, which hold NaN: others were found on the way by [`Tracer::trace_tile`].
+///
+/// # Errors
+/// When the engine cannot compile the gradient.
+pub fn other_normals(
+    surface: &Surface,
+    tracer: Option<&dyn Tracer>,
+    workspace: &mut Workspace,
+    tile: Tile<'_>,
+    outcomes: &[Outcome],
+    normals: &mut [DVec3],
+) -> Result<(), CompileError> {
     assert!(
         tile.len() == outcomes.len() && tile.len() == normals.len(),
         "each ray has an outcome and a normal"
     );
-    normals.fill(DVec3::NAN);
-    if !outcomes.iter().any(|outcome| matches!(outcome, Outcome::Hit(_) | Outcome::Touch(_))) {
-        return Ok(());
-    }
-    let everywhere = surface.gradients()?;
+    let shorter = tracer.filter(|_| surface.program().has_branches());
+    let side = if shorter.is_some() { BLOCK } else { tile.width().max(tile.height()) };
     let mut asked = std::mem::take(&mut workspace.asked);
+    let mut others = Vec::new();
     asked.clear();
-    asked.extend(
-        outcomes.iter().map(|outcome| if let Outcome::Hit(hit) = outcome { hit.t } else { f64::NAN }),
-    );
-    let all = Area { column: 0, row: 0, width: tile.width(), height: tile.height() };
-    if let (Some(tracer), true) = (tracer, surface.program().has_branches()) {
-        for block in all.blocks(BLOCK) {
-            answer_block(tracer, workspace, (tile, block), &mut asked, normals);
-        }
-    }
-    answer(&**everywhere, workspace, (tile, all), &asked, normals);
-    let mut others: Vec<Met> = Vec::new();
-    for (place, outcome) in outcomes.iter().enumerate() {
-        match *outcome {
-            Outcome::Hit(Hit { bracket, .. }) if normals[place].x.is_nan() => {
-                others.push(Met { place, bracket })
+    for block in (Area { column: 0, row: 0, width: tile.width(), height: tile.height() }).blocks(side) {
+        let first = asked.len();
+        for row in block.rows() {
+            for place in block.columns().map(|column| row * tile.width() + column) {
+                match outcomes[place] {
+                    Outcome::Hit(Hit { t, .. }) if normals[place].x.is_nan() => {
+                        asked.push(Asked { place, t })
+                    }
+                    // The gradient there may be nothing but rounding.
+                    Outcome::Touch(Hit { bracket, .. }) if normals[place].x.is_nan() => {
+                        others.push(Met { place, bracket });
+                    }
+                    _ => {}
+                }
             }
-            // The gradient there may be nothing but rounding.
-            Outcome::Touch(Hit { bracket, .. }) => others.push(Met { place, bracket }),
-            _ => {}
+        }
+        if let Some(kernel) = shorter.and_then(|tracer| kernel_on(tracer, tile, &asked[first..])) {
+            answer(&*kernel, workspace, tile, &asked[first..], normals);
+            others.extend(unanswered(&asked[first..], outcomes, normals));
+            asked.truncate(first);
         }
     }
-    for approach in APPROACH {
-        if others.is_empty() {
-            break;
+    if !(asked.is_empty() && others.is_empty()) {
+        let everywhere = &**surface.gradients()?;
+        answer(everywhere, workspace, tile, &asked, normals);
+        others.extend(unanswered(&asked, outcomes, normals));
+        for approach in APPROACH {
+            if others.is_empty() {
+                break;
+            }
+            asked.clear();
+            asked.extend(others.iter().map(|met| met.in_front(&tile, approach)));
+            answer(everywhere, workspace, tile, &asked, normals);
+            others.retain(|met| normals[met.place].is_nan());
         }
-        asked.fill(f64::NAN);
-        for met in &others {
-            asked[met.place] = met.in_front(&tile, approach);
-        }
-        answer(&**everywhere, workspace, (tile, all), &asked, normals);
-        others.retain(|met| normals[met.place].is_nan());
     }
     workspace.asked = asked;
     Ok(())
 }
 
-/// Answers what is asked for in a block, and asks for it no more, where the tracer knows a shorter formula.
-fn answer_block(
-    tracer: &dyn Tracer,
-    workspace: &mut Workspace,
-    (tile, block): (Tile<'_>, Area),
-    asked: &mut [f64],
-    normals: &mut [DVec3],
-) {
-    let Some((lo, hi)) = around(tile, block, asked) else { return };
-    let Some(kernel) = tracer.gradients_on(lo, hi) else { return };
-    answer(&*kernel, workspace, (tile, block), asked, normals);
-    for row in block.rows() {
-        asked[row * tile.width()..][block.columns()].fill(f64::NAN);
-    }
+/// A point at which a normal is asked for: where on the ray of this place in a tile.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Asked {
+    place: usize,
+    t: f64,
 }
 
-/// The corners of a box around the points of a block at which normals are asked for, if there are many.
-fn around(tile: Tile<'_>, block: Area, asked: &[f64]) -> Option<(DVec3, DVec3)> {
-    let (mut count, mut lo, mut hi) = (0, DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for row in block.rows() {
-        for column in block.columns() {
-            let t = asked[row * tile.width() + column];
-            if !t.is_nan() {
-                let point = tile.ray(column, row).at(t);
-                (count, lo, hi) = (count + 1, lo.min(point), hi.max(point));
-            }
+/// The shorter formula that the tracer knows around some points of a block, if there are many.
+fn kernel_on(tracer: &dyn Tracer, tile: Tile<'_>, asked: &[Asked]) -> Option<Arc<dyn BatchKernel>> {
+    if asked.len() < MANY {
+        return None;
+    }
+    let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for Asked { place, t } in asked {
+        let point = tile.ray(place % tile.width(), place / tile.width()).at(*t);
+        (lo, hi) = (lo.min(point), hi.max(point));
+    }
+    tracer.gradients_on(lo, hi)
+}
+
+/// The hits that were asked about and have no normal.
+fn unanswered(asked: &[Asked], outcomes: &[Outcome], normals: &[DVec3]) -> impl Iterator<Item = Met> {
+    asked.iter().filter(|asked| normals[asked.place].x.is_nan()).filter_map(|Asked { place, .. }| {
+        match outcomes[*place] {
+            Outcome::Hit(Hit { bracket, .. }) => Some(Met { place: *place, bracket }),
+            _ => None,
         }
-    }
-    (count >= MANY).then_some((lo, hi))
+    })
 }
 
-/// Puts the normals in their places that are asked for in an area: at these t of the rays of a tile, NaN where none is.
+/// Puts the normals in their places that are asked for along the rays of a tile.
 fn answer(
     kernel: &dyn BatchKernel,
     workspace: &mut Workspace,
-    (tile, area): (Tile<'_>, Area),
-    asked: &[f64],
+    tile: Tile<'_>,
+    asked: &[Asked],
     normals: &mut [DVec3],
 ) {
     let Workspace { arch, scratch, counters, points, .. } = workspace;
-    counters.gradient_evaluations +=
-        arch.dispatch(Search { kernel, tile, area, asked, points, scratch, normals });
+    counters.gradient_evaluations += asked.len() as u64;
+    arch.dispatch(Search { kernel, tile, asked, points, scratch, normals });
 }
 
-/// The search for the normals of an area of a tile.
+/// The search for the normals of points on the rays of a tile.
 struct Search<'a> {
     kernel: &'a dyn BatchKernel,
     tile: Tile<'a>,
-    area: Area,
-    asked: &'a [f64],
+    asked: &'a [Asked],
     points: &'a mut PointBatch,
     scratch: &'a mut Scratch,
     normals: &'a mut [DVec3],
 }
 
 impl WithSimd for Search<'_> {
-    /// How many normals were asked for.
-    type Output = u64;
+    type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> u64 {
-        let Self { kernel, tile, area, asked, points, scratch, normals } = self;
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { kernel, tile, asked, points, scratch, normals } = self;
         let mut units = [[0.0; ROW]; 4];
-        let lanes_of = |column: usize| ROW.min(area.column + area.width - column);
-        let mut rows = area
-            .rows()
-            .flat_map(|row| area.columns().step_by(ROW).map(move |column| (row, column)))
-            .map(|(row, column)| (row * tile.width() + column, lanes_of(column)))
-            .filter(|(first, lanes)| asked[*first..][..*lanes].iter().any(|t| !t.is_nan()));
-        let mut firsts = [(0, 0); ROWS];
-        let mut answered = 0;
-        loop {
-            let mut count = 0;
-            for (place, first) in firsts.iter_mut().zip(&mut rows) {
-                *place = first;
-                count += 1;
-            }
-            if count == 0 {
-                return answered;
-            }
-            for ((first, lanes), coordinates) in firsts.iter().zip(points.rows(count)) {
-                let t = row_of(&asked[*first..][..*lanes]);
-                tile.row_from(simd, *first).at(simd, &t, coordinates);
+        for asked in asked.chunks(ROW * ROWS) {
+            let count = asked.len().div_ceil(ROW);
+            for (asked, coordinates) in asked.chunks(ROW).zip(points.rows(count)) {
+                let (mut columns, mut rows, mut ts) = (Row::default(), Row::default(), [f64::NAN; ROW]);
+                for (lane, Asked { place, t }) in asked.iter().enumerate() {
+                    columns[lane] = (place % tile.width()) as f64;
+                    rows[lane] = (place / tile.width()) as f64;
+                    ts[lane] = *t;
+                }
+                tile.row(simd, &columns, &rows).at(simd, &ts, coordinates);
             }
             let outputs = points.evaluate(kernel, scratch, 4);
             let (outputs, _) = outputs.as_chunks::<ROW>();
-            for (number, (first, lanes)) in firsts[..count].iter().enumerate() {
+            for (number, asked) in asked.chunks(ROW).enumerate() {
                 let gradients = [1, 2, 3].map(|output| &outputs[output * count + number]);
                 put_units(simd, gradients, &mut units);
-                for (lane, t) in asked[*first..][..*lanes].iter().enumerate() {
-                    if t.is_nan() {
-                        continue;
-                    }
-                    answered += 1;
+                for (lane, Asked { place, .. }) in asked.iter().enumerate() {
                     let [x, y, z, is_plain] = units.each_ref().map(|row| row[lane]);
                     let found = || unit_of(DVec3::from_array(gradients.map(|row| row[lane])));
-                    normals[first + lane] = if is_plain > 0.0 { DVec3::new(x, y, z) } else { found() };
+                    normals[*place] = if is_plain > 0.0 { DVec3::new(x, y, z) } else { found() };
                 }
             }
         }
     }
 }
 
-/// Up to a row of numbers; NaN behind the last.
-#[inline(always)]
-fn row_of(numbers: &[f64]) -> Row {
-    let mut row = [f64::NAN; ROW];
-    row[..numbers.len()].copy_from_slice(numbers);
-    row
-}
-
 /// The directions of vectors, coordinate by coordinate, and beside them 1 where squares neither overflow nor underflow, or else 0.
 #[inline(always)]
-fn put_units<S: Simd>(simd: S, vectors: [&Row; 3], [units @ .., are_plain]: &mut [Row; 4]) {
+pub(crate) fn put_units<S: Simd>(simd: S, vectors: [&Row; 3], [units @ .., are_plain]: &mut [Row; 4]) {
     let all = |number| Lanes::all(simd, number);
     for part in 0..parts::<S>() {
         let [x, y, z] = vectors;
@@ -231,12 +226,12 @@ struct Met {
 
 impl Met {
     /// Where the ray is in front of the bracket by 2 to this power of the way to it, or of the bracket's length if that is more.
-    fn in_front(&self, tile: &Tile<'_>, power: i32) -> f64 {
-        let Span { start, end } = self.bracket;
-        let ray = tile.ray(self.place % tile.width(), self.place / tile.width());
+    fn in_front(&self, tile: &Tile<'_>, power: i32) -> Asked {
+        let Self { place, bracket: Span { start, end } } = *self;
+        let ray = tile.ray(place % tile.width(), place / tile.width());
         let way = end.abs().max(ray.origin.abs().max_element() / ray.direction.abs().max_element());
         let nearest = way * 2_f64.powi(APPROACH[0]);
         let distance = nearest.max(end - start) * 2_f64.powi(power - APPROACH[0]);
-        start - distance
+        Asked { place, t: start - distance }
     }
 }

@@ -175,21 +175,6 @@ impl<'a> Tile<'a> {
         }
     }
 
-    /// The rays from this place on, counted row by row; behind the last one, the first again.
-    #[inline(always)]
-    pub(crate) fn row_from<S: Simd>(&self, simd: S, first: usize) -> RayRow {
-        let (mut columns, mut rows) = (Row::default(), Row::default());
-        let (mut column, mut row) = (first % self.width, first / self.width);
-        for lane in 0..ROW.min(self.len() - first) {
-            (columns[lane], rows[lane]) = (column as f64, row as f64);
-            column += 1;
-            if column == self.width {
-                (column, row) = (0, row + 1);
-            }
-        }
-        self.row(simd, &columns, &rows)
-    }
-
     /// The rays in these columns and rows.
     #[inline(always)]
     pub(crate) fn row<S: Simd>(&self, simd: S, columns: &Row, rows: &Row) -> RayRow {
@@ -245,7 +230,7 @@ mod tests {
 
     use super::*;
 
-    /// A row of a tile's rays from a place on, and their points at t.
+    /// The rays from a place of a tile on, counted row by row, behind the last one the first again, and their points at t.
     struct Points<'a>(&'a Tile<'a>, usize, Row);
 
     impl WithSimd for Points<'_> {
@@ -254,7 +239,10 @@ mod tests {
         #[inline(always)]
         fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
             let Self(tile, first, t) = self;
-            let rays = tile.row_from(simd, first);
+            let place = |lane: usize| (first + lane) % tile.len();
+            let columns = std::array::from_fn(|lane| (place(lane) % tile.width()) as f64);
+            let rows = std::array::from_fn(|lane| (place(lane) / tile.width()) as f64);
+            let rays = tile.row(simd, &columns, &rows);
             let [mut x, mut y, mut z] = [Row::default(); 3];
             rays.at(simd, &t, [&mut x, &mut y, &mut z]);
             (rays, [x, y, z])

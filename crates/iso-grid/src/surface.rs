@@ -33,6 +33,7 @@ pub struct Surface {
 #[derive(Default)]
 struct Programs {
     gradient: OnceLock<Program>,
+    slope: OnceLock<Program>,
     rounding: OnceLock<Program>,
     hessian: OnceLock<Program>,
     forms: OnceLock<Program>,
@@ -131,6 +132,7 @@ impl Surface {
                 .programs
                 .gradient
                 .get_or_init(|| self.derived(kernel, || self.value.with_gradient().simplified())),
+            Kernel::Slopes => self.programs.slope.get_or_init(|| self.value.with_slope().simplified()),
             Kernel::RoundingBounds => self
                 .programs
                 .rounding
@@ -144,7 +146,7 @@ impl Surface {
                 forms.expect("derivatives of what has forms have forms")
             }),
             Kernel::ParallelForms => self.programs.parallel_forms.get_or_init(|| {
-                let forms = self.value.with_slope().simplified().with_forms();
+                let forms = self.program_of(Kernel::Slopes).with_forms();
                 forms.expect("derivatives of what has forms have forms")
             }),
         }
@@ -175,6 +177,14 @@ impl Surface {
     /// When the engine cannot compile it.
     pub fn gradients(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
         self.over_points(Kernel::Gradients)
+    }
+
+    /// F − C and its [slope](Program::with_slope) along a direction at points.
+    ///
+    /// # Errors
+    /// When the engine cannot compile it.
+    pub fn slopes(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
+        self.over_points(Kernel::Slopes)
     }
 
     /// The [affine forms](Program::with_forms) of F − C and its three derivatives, made for few runs where that kernel is too large to be

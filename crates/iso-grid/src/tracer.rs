@@ -8,6 +8,7 @@ use pulp::Arch;
 
 use crate::batch::{BoxBatch, FormBatch, PointBatch};
 use crate::certified::{Ahead, Entry, Expansion, Memory};
+use crate::normals::Asked;
 use crate::{Counters, Ray, Span, Tile};
 
 /// A point of the surface on a ray.
@@ -45,7 +46,17 @@ pub trait Tracer: Send + Sync {
     ///
     /// A method may share work between the rays of a tile. What it says of each is as true as if it were traced alone, but
     /// where in its bracket a root is placed, and how wide the bracket is, may depend on the other rays of the tile.
-    fn trace_tile(&self, workspace: &mut Workspace, tile: Tile<'_>, outcomes: &mut [Outcome]) {
+    ///
+    /// With `normals`, of which there are as many, a method puts those of hits in their places that it comes by on the way: the unit normal ∇F/|∇F| at
+    /// a point of the ray no farther from the hit than its bracket is wide. It leaves all others as they are.
+    fn trace_tile(
+        &self,
+        workspace: &mut Workspace,
+        tile: Tile<'_>,
+        outcomes: &mut [Outcome],
+        normals: Option<&mut [DVec3]>,
+    ) {
+        let _ = normals;
         self.trace(workspace, &tile.rays().collect::<Vec<_>>(), outcomes);
     }
 
@@ -70,7 +81,7 @@ pub struct Workspace {
     /// How many numbers the processor computes with at once.
     pub(crate) arch: Arch,
     /// Where normals are asked for along the rays of a tile.
-    pub(crate) asked: Vec<f64>,
+    pub(crate) asked: Vec<Asked>,
     /// Points for the kernels, and their values.
     pub(crate) points: PointBatch,
     /// Points whose gradients are asked for beside their values.

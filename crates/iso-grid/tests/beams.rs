@@ -140,7 +140,7 @@ fn together(tracer: &dyn Tracer, view: &View) -> Vec<Vec<Outcome>> {
     let tiles = of_raster.chain([Tile::listed(&view.rays, width)]);
     let trace = |tile| {
         let mut outcomes = vec![Outcome::Miss; view.rays.len()];
-        tracer.trace_tile(&mut Workspace::default(), tile, &mut outcomes);
+        tracer.trace_tile(&mut Workspace::default(), tile, &mut outcomes, None);
         outcomes
     };
     tiles.map(trace).collect()
@@ -284,7 +284,7 @@ fn shortened_formulas_prove_what_whole_ones_do() {
         for View { name: view, rays, width, .. } in views(half, 48, 40) {
             let trace = |tracer: &Certified| {
                 let (mut workspace, mut outcomes) = (Workspace::default(), vec![Outcome::Miss; rays.len()]);
-                tracer.trace_tile(&mut workspace, Tile::listed(&rays, width), &mut outcomes);
+                tracer.trace_tile(&mut workspace, Tile::listed(&rays, width), &mut outcomes, None);
                 (outcomes, workspace.counters.operations)
             };
             let ((short, fewer), (long, more)) = (trace(&shortened), trace(&whole));

@@ -29,7 +29,7 @@ fn what_is_left_of_a_formula_has_the_normals_of_all_of_it() {
     let tile = Tile::of(&raster, [-31.5, -31.5], 61, 64);
     let mut workspace = Workspace::default();
     let mut outcomes = vec![Outcome::Miss; tile.len()];
-    tracer.trace_tile(&mut workspace, tile, &mut outcomes);
+    tracer.trace_tile(&mut workspace, tile, &mut outcomes, None);
     let mut found = |tracer: Option<&dyn Tracer>| {
         let mut found = vec![DVec3::ZERO; tile.len()];
         normals(&surface, tracer, &mut workspace, tile, &outcomes, &mut found).unwrap();
@@ -41,4 +41,56 @@ fn what_is_left_of_a_formula_has_the_normals_of_all_of_it() {
     let hits = outcomes.iter().filter(|outcome| matches!(outcome, Outcome::Hit(_))).count();
     assert_eq!(here.iter().filter(|normal| (normal.length() - 1.0).abs() < 1e-12).count(), hits);
     assert!(hits > tile.len() / 4, "{hits} hits");
+}
+
+/// Where a tracer says that rays of a tile meet the surface, and the normals that it comes by on the way.
+fn traced(tracer: &Certified, tile: Tile<'_>) -> (Vec<Outcome>, Vec<DVec3>) {
+    let mut outcomes = vec![Outcome::Miss; tile.len()];
+    let mut normals = vec![DVec3::NAN; tile.len()];
+    tracer.trace_tile(&mut Workspace::default(), tile, &mut outcomes, Some(&mut normals));
+    (outcomes, normals)
+}
+
+#[test]
+fn normals_found_on_the_way_are_those_of_the_hits_and_change_no_outcome() {
+    let formulas = [
+        "x^2 + y^2 + z^2 = 1",
+        "sin(3x) * cos(3y) + sin(3y) * cos(3z) + sin(3z) * cos(3x) = 0",
+        "x^2 + y^2 + z^2 = 0.7 + abs(z) / 2",
+        "exp(x) + y^2 = z + 1",
+    ];
+    let [right, down] = [DVec3::new(0.02, 0.0, 0.0), DVec3::new(0.0, -0.02, 0.005)];
+    let middle = DVec3::new(0.0, 0.0, 5.0);
+    let rasters = [
+        Raster::Parallel { middle, right, down, direction: DVec3::new(0.05, 0.1, -1.0) },
+        Raster::Spreading { eye: middle, forward: DVec3::NEG_Z, right: 0.2 * right, down: 0.2 * down },
+    ];
+    for formula in formulas {
+        let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().program().simplified();
+        let surface = Surface::new(Arc::new(Interpreter), program);
+        let region = Region::new(DVec3::splat(-1.6), DVec3::splat(1.6)).unwrap();
+        let tracer = Certified::new(&surface, region).unwrap();
+        for raster in &rasters {
+            let tile = Tile::of(raster, [-31.5, -31.5], 64, 64);
+            let (outcomes, on_the_way) = traced(&tracer, tile);
+            let (mut alone, mut all) = (outcomes.clone(), on_the_way.clone());
+            let mut workspace = Workspace::default();
+            tracer.trace_tile(&mut workspace, tile, &mut alone, None);
+            assert_eq!(outcomes, alone, "{formula}");
+            normals(&surface, None, &mut workspace, tile, &outcomes, &mut all).unwrap();
+
+            let (mut hits, mut found) = (0, 0);
+            for ((outcome, normal), expected) in outcomes.iter().zip(&on_the_way).zip(&all) {
+                hits += i32::from(matches!(outcome, Outcome::Hit(_)));
+                if !normal.is_nan() {
+                    found += 1;
+                    assert!(matches!(outcome, Outcome::Hit(_)), "{formula}");
+                    assert!(normal.distance(*expected) < 1e-10, "{formula}: {normal} for {expected}");
+                }
+            }
+            // What is left of a formula in some place has its normals looked for afterwards.
+            let least = if surface.program().has_branches() { 0 } else { hits / 2 };
+            assert!(hits > 200 && found > least, "{formula}: {found} of {hits}");
+        }
+    }
 }

@@ -280,6 +280,11 @@ impl Wanted<'_> {
                 (true, "roots are found by the slope of F along the ray")
             }
             Kernel::Gradients => self.normals(),
+            Kernel::Slopes if certified && self.projection.is_some() => {
+                (true, "rays side by side are followed to their roots")
+            }
+            Kernel::Slopes if certified => (false, "each ray is searched for its own"),
+            Kernel::Slopes => (false, "the method samples"),
             Kernel::ValueEnclosures if certified => (true, "stretches of rays and cells are proven empty"),
             Kernel::ValueEnclosures if !self.box_is_given => (true, "a box is fitted around the surface"),
             Kernel::ValueEnclosures => (false, "the method samples, and the box is given"),

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use glam::{DVec3, Vec3};
 use iso_expr::CompileError;
-use iso_grid::{Counters, Outcome, Surface, Tracer, Workspace, normals};
+use iso_grid::{Counters, Outcome, Surface, Tracer, Workspace, other_normals};
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -162,31 +162,38 @@ struct Tile {
 impl Tile {
     /// Finds out about its pixels, unless work is stopped before that is done.
     fn render(&mut self, scene: &Scene<'_>, size: Size, area: Area) -> Result<(), RenderError> {
+        let is_clear = self.content == Content::Nothing;
         (self.area, self.content) = (area, Content::Unfinished);
         let stop = scene.surface.stop();
         if stop.is_requested() {
             return Ok(());
         }
         let mut watch = Stopwatch::start();
-        let Self { workspace, outcomes, normals: found_normals, .. } = self;
+        let Self { workspace, outcomes, normals, .. } = self;
         let rays = scene.camera.tile(area.column, area.row, area.width, area.height);
         outcomes.resize(rays.len(), Outcome::Miss);
         workspace.counters = Counters::default();
-        scene.tracer.trace_tile(workspace, rays, outcomes);
+        let are_normals_wanted = scene.plan.runs(Pass::Normals);
+        if !is_clear {
+            normals.clear();
+        }
+        normals.resize(if are_normals_wanted { rays.len() } else { 0 }, DVec3::NAN);
+        let on_the_way = are_normals_wanted.then_some(&mut normals[..]);
+        scene.tracer.trace_tile(workspace, rays, outcomes, on_the_way);
         if stop.is_requested() {
             return Ok(());
         }
         self.trace = watch.lap();
-        let is_empty = outcomes.iter().all(|outcome| *outcome == Outcome::Miss);
+        self.counts = StatusCounts::default();
+        outcomes.iter().for_each(|outcome| self.counts.count(Status::from(outcome)));
+        let is_empty = self.counts.miss == rays.len() as u64;
         self.content = if is_empty { Content::Nothing } else { Content::Found };
-        if scene.plan.runs(Pass::Normals) && !is_empty {
-            found_normals.resize(rays.len(), DVec3::NAN);
-            normals(scene.surface, Some(scene.tracer), workspace, rays, outcomes, found_normals)?;
+        if are_normals_wanted && !is_empty {
+            other_normals(scene.surface, Some(scene.tracer), workspace, rays, outcomes, normals)?;
         }
         if scene.plan.runs(Pass::Shade) {
             self.shade(scene.shading, rays, size);
         }
-        self.count();
         self.shade = watch.lap();
         Ok(())
     }
@@ -206,16 +213,6 @@ impl Tile {
                     srgb_from_color(shading.color(outcome, normals[column], view, background))
                 }
             }));
-        }
-    }
-
-    /// Counts the pixels by status.
-    fn count(&mut self) {
-        self.counts = StatusCounts::default();
-        if self.content == Content::Nothing {
-            self.counts.miss = self.outcomes.len() as u64;
-        } else {
-            self.outcomes.iter().for_each(|outcome| self.counts.count(Status::from(outcome)));
         }
     }
 }

@@ -18,9 +18,10 @@ const TERMS: [usize; 7] = [3, 10, 30, 100, 300, 700, 1_400];
 /// Formulas of more operations are not asked for their forms.
 const WITH_FORMS: usize = 100;
 /// The kernels of one formula, from the point kernel of F to the affine forms of F and its gradient.
-const KERNELS: [&str; 8] = [
+const KERNELS: [&str; 9] = [
     "point",
     "batch",
+    "batch+slope",
     "batch+gradient",
     "boxes",
     "boxes+gradient",
@@ -59,12 +60,14 @@ fn measure(name: &str, value: &Program, results: &mut Results) -> Result<(), Box
     let (gradient, rounding) = (value.with_gradient().simplified(), value.with_rounding().simplified());
     let has_forms = value.has_forms() && value.operations() <= WITH_FORMS;
     let forms = has_forms.then(|| gradient.with_forms()).flatten();
-    let parallel_forms = has_forms.then(|| value.with_slope().simplified().with_forms()).flatten();
+    let slope = value.with_slope().simplified();
+    let parallel_forms = has_forms.then(|| slope.with_forms()).flatten();
     let operations = value.operations().to_string();
     let (mut all, mut ahead) = (0.0, 0.0);
     print!("{name:<12}{operations:>10}");
     for kernel in KERNELS {
         let program = match kernel {
+            "batch+slope" => Some(&slope),
             "batch+gradient" | "boxes+gradient" => Some(&gradient),
             "boxes+rounding" => Some(&rounding),
             "forms" => forms.as_ref(),
@@ -102,7 +105,7 @@ fn measure(name: &str, value: &Program, results: &mut Results) -> Result<(), Box
 /// Whether a picture of parallel rays with normals compiles the kernel ahead.
 fn is_ahead(kernel: &str, has_forms: bool) -> bool {
     match kernel {
-        "batch" | "batch+gradient" | "boxes" => true,
+        "batch" | "batch+slope" | "batch+gradient" | "boxes" => true,
         "parallel forms" => has_forms,
         "boxes+gradient" => !has_forms,
         _ => false,
@@ -112,7 +115,9 @@ fn is_ahead(kernel: &str, has_forms: bool) -> bool {
 fn compile(jit: &Jit, kernel: &str, program: &Program) -> Result<(), CompileError> {
     match kernel {
         "point" => drop(black_box(jit.point(program)?)),
-        "batch" | "batch+gradient" | "forms" | "parallel forms" => drop(black_box(jit.batch(program)?)),
+        "batch" | "batch+slope" | "batch+gradient" | "forms" | "parallel forms" => {
+            drop(black_box(jit.batch(program)?))
+        }
         _ => drop(black_box(jit.boxes(program)?)),
     }
     Ok(())

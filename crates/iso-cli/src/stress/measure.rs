@@ -153,7 +153,12 @@ fn truths(case: &Case, rays: &[Ray], size: Size) -> Result<Vec<Truth>, Failure> 
 /// Traces a picture as one tile.
 fn trace(tracer: &dyn Tracer, rays: &[Ray], size: Size) -> Vec<Outcome> {
     let mut outcomes = vec![Outcome::Miss; rays.len()];
-    tracer.trace_tile(&mut Workspace::default(), Tile::listed(rays, size.width() as usize), &mut outcomes);
+    tracer.trace_tile(
+        &mut Workspace::default(),
+        Tile::listed(rays, size.width() as usize),
+        &mut outcomes,
+        None,
+    );
     outcomes
 }
 

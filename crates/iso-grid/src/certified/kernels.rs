@@ -270,7 +270,12 @@ impl Kernels {
 
     /// F at points.
     pub(super) fn points(&self) -> &dyn BatchKernel {
-        &**compiled(self.formula.surface().values())
+        self.over_points(Kernel::Values)
+    }
+
+    /// One of the kernels over points.
+    pub(super) fn over_points(&self, kernel: Kernel) -> &dyn BatchKernel {
+        &**compiled(self.formula.surface().over_points(kernel))
     }
 
     /// F and its gradient at points, made for few runs, if that takes less time than those of `others` as native code.
@@ -304,7 +309,7 @@ impl Kernels {
 
     /// The affine forms of F and its derivatives, by one of the kernels of forms, where that pays.
     pub(super) fn forms(&self, kernel: Kernel) -> Option<&dyn BatchKernel> {
-        self.formula.has_forms.then(|| &**compiled(self.formula.surface().over_points(kernel)))
+        self.formula.has_forms.then(|| self.over_points(kernel))
     }
 
     /// The corners of the box on which they hold.

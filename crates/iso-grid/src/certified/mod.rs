@@ -157,9 +157,16 @@ impl Tracer for Certified {
         }
     }
 
-    fn trace_tile(&self, workspace: &mut Workspace, tile: Tile<'_>, outcomes: &mut [Outcome]) {
+    fn trace_tile(
+        &self,
+        workspace: &mut Workspace,
+        tile: Tile<'_>,
+        outcomes: &mut [Outcome],
+        normals: Option<&mut [DVec3]>,
+    ) {
         assert_eq!(tile.len(), outcomes.len());
-        match Subdivision::new(self, workspace, tile, outcomes) {
+        assert!(normals.as_ref().is_none_or(|normals| normals.len() == tile.len()));
+        match Subdivision::new(self, workspace, tile, (outcomes, normals)) {
             Some(subdivision) => subdivision.run(),
             None => self.trace(workspace, &tile.rays().collect::<Vec<_>>(), outcomes),
         }

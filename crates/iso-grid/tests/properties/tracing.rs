@@ -64,7 +64,7 @@ fn trace_by_two(random: &mut Random, program: &Program, stop: &Stop) -> Result<(
     let certified = Certified::new(&surface, region)?;
     let alone = outcomes(&certified, &rays);
     let mut together = alone.clone();
-    certified.trace_tile(&mut Workspace::default(), Tile::listed(&rays, side), &mut together);
+    certified.trace_tile(&mut Workspace::default(), Tile::listed(&rays, side), &mut together, None);
     if stop.is_requested() {
         return Err(GridError::Stopped);
     }

@@ -1,5 +1,6 @@
 //! Rays side by side that are followed to their roots where F is monotone.
 
+use glam::DVec3;
 use iso_expr::{BatchKernel, Scratch};
 use pulp::{Simd, WithSimd};
 
@@ -7,6 +8,7 @@ use super::form::{Model, ROUNDING};
 use super::pixels::{End, STEPS};
 use crate::batch::PointBatch;
 use crate::lanes::{Lanes, ROW, Row, parts};
+use crate::normals::put_units;
 use crate::raster::RayRow;
 use crate::{Hit, Span, Tile};
 
@@ -24,11 +26,10 @@ pub(crate) struct Bundle {
     wanted: [Row; 2],
     /// Where F is to be taken next, inside `reach`. In the end, about where the root is.
     t: Row,
-    /// F at the last two places, NaN where that is unknown; how far t is from the last one; and how far t went there for each unit
-    /// of F.
-    values: [Row; 2],
+    /// F at the last place where its slope was taken, NaN where there was none, one over the slope, and how far t is from there.
+    value: Row,
+    inverse: Row,
     step: Row,
-    secant: Row,
     state: Row,
 }
 
@@ -44,12 +45,29 @@ mod state {
     pub(super) const LOST: f64 = 3.0;
 }
 
+/// A ray is near its root where another step is expected to leave this part of the tolerance.
+const NEAR: f64 = 64.0;
+
+/// What is to be taken of F next along the rays of a bundle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Need {
+    /// Nothing: no ray is open.
+    #[default]
+    Nothing,
+    /// Its value and its slope, to come nearer.
+    Slopes,
+    /// What is wanted where rays meet the surface, for that is where they are likely to be.
+    Last,
+}
+
 /// What a double computed for F says about the root, all over a part.
 pub(super) struct Sight {
     /// One over the middle of the slopes of F.
     pub(super) inverse: f64,
     /// How far that is from one over any slope, as part of it.
     pub(super) unevenness: f64,
+    /// How much a slope may differ from the one a unit of t away, as part of it, about.
+    pub(super) bend: f64,
     /// How far rounding of F may move a root.
     pub(super) blur: f64,
     /// How wide the enclosure of a root may be.
@@ -100,7 +118,7 @@ impl Bundle {
         Start { tile, model, middle, within: [least, most] }: &Start<'_>,
     ) -> bool {
         self.rays = tile.row(simd, &self.columns, &self.rows);
-        self.values = [[f64::NAN; ROW]; 2];
+        (self.value, self.step) = ([f64::NAN; ROW], [f64::INFINITY; ROW]);
         let all = |number| Lanes::all(simd, number);
         let mut are_open = false;
         for part in 0..parts::<S>() {
@@ -117,14 +135,14 @@ impl Bundle {
     }
 
     /// One step of the interval Newton method, for all slopes of the part at once, where `values` were computed for F at t. All
-    /// roots in reach lie in its result, and if that lies in reach itself, there is one. Where it is about, values so far
-    /// tell. Says whether rays are open still.
+    /// roots in reach lie in its result, and if that lies in reach itself, there is one. Where it is about, the slopes of F at t tell, or
+    /// the last ones. Says what is needed next.
     #[inline(always)]
-    fn look<S: Simd>(&mut self, simd: S, values: &Row, sight: &Sight) -> bool {
+    fn look<S: Simd>(&mut self, simd: S, values: &Row, slopes: Option<&Row>, sight: &Sight) -> Need {
         let all = |number| Lanes::all(simd, number);
         let [free, open] = [all(state::FREE), all(state::OPEN)];
         let [hit, lost] = [all(state::HIT), all(state::LOST)];
-        let mut are_open = false;
+        let (mut are_open, mut are_far) = (false, false);
         for part in 0..parts::<S>() {
             let at = |row: &Row| Lanes::of(simd, row, part);
             let (t, value, before) = (at(&self.t), at(values), at(&self.state));
@@ -140,9 +158,19 @@ impl Bundle {
             let is_narrow = (radius + radius).is_at_most(all(sight.tolerance));
             let is_inside = reach[0].is_at_most(root[0]) & root[1].is_at_most(reach[1]);
 
-            let nearer = self.interpolate((simd, part), [t, value, middle], sight);
+            let nearer = match slopes {
+                Some(slopes) => self.interpolate((simd, part), [t, value, at(slopes)], sight),
+                None => t - value * at(&self.inverse),
+            };
             let next = nearer.between(reach[0], reach[1]);
-            let step = next - t;
+            let (step, before_that) = (next - t, at(&self.step));
+            // About as far as `next` is from the root, as slopes change.
+            let change = (before_that * all(sight.bend)).abs();
+            let rest = match slopes {
+                Some(_) => step * step * all(sight.bend) * (change * change).between(all(0.0), all(1.0)),
+                None => step.abs() * change,
+            };
+            let is_far = all(NEAR * sight.tolerance).is_less(rest * all(sight.unevenness));
             let moves = step.is_less(all(0.0)) | all(0.0).is_less(step);
 
             let otherwise = is_narrow.select(is_inside.select(hit, lost), moves.select(open, lost));
@@ -154,38 +182,60 @@ impl Bundle {
             for (end, side) in self.wanted.iter_mut().enumerate() {
                 is_found.select(root[end], wanted[end]).put(side, part);
             }
-            step.put(&mut self.step, part);
+            if slopes.is_some() { step } else { before_that + step }.put(&mut self.step, part);
             let state = was_open.select(state, before);
             state.put(&mut self.state, part);
             are_open |= state.is_same(open).is_anywhere();
+            are_far |= (state.is_same(open) & is_far).is_anywhere();
         }
-        are_open
+        match (are_open, are_far) {
+            (false, _) => Need::Nothing,
+            (true, true) => Need::Slopes,
+            (true, false) => Need::Last,
+        }
     }
 
-    /// About where the root is by the last values, the newest of which is `value`, taken at t: by inverse linear and quadratic
-    /// interpolation (Brent, Algorithms for Minimization without Derivatives, 1973, chapter 4). `otherwise` after the first one, and
-    /// when they tell of a slope that F does not have.
+    /// About where the root is by the value and the slope of F at t, and at the last place: by Newton's method at first, and then by
+    /// inverse cubic interpolation (Hermite). By the middle of the part's slopes where F would have one that it does not have.
     #[inline(always)]
     fn interpolate<S: Simd>(
         &mut self,
         (simd, part): (S, usize),
-        [t, value, otherwise]: [Lanes<S>; 3],
+        [t, value, slope]: [Lanes<S>; 3],
         sight: &Sight,
     ) -> Lanes<S> {
-        let at = |row: &Row| Lanes::of(simd, row, part);
-        let [before, last] = [at(&self.values[0]), at(&self.values[1])];
-        let secant = at(&self.step) / (value - last);
-        let bend = value * last * (secant - at(&self.secant)) / (value - before);
-        last.put(&mut self.values[0], part);
-        value.put(&mut self.values[1], part);
-        secant.put(&mut self.secant, part);
-        let inverse = Lanes::all(simd, sight.inverse);
+        let [last, before, step] =
+            [&self.value, &self.inverse, &self.step].map(|row| Lanes::of(simd, row, part));
+        let one = Lanes::all(simd, 1.0);
+        let middle = Lanes::all(simd, sight.inverse);
         let most = Lanes::all(simd, sight.unevenness * sight.inverse.abs());
-        let linear = value * secant;
-        // A bend is a small correction, and none is known before the third value.
+        let computed = one / slope;
+        let inverse = (computed - middle).abs().is_at_most(most).select(computed, middle);
+        value.put(&mut self.value, part);
+        inverse.put(&mut self.inverse, part);
+
+        let per_value = one / (value - last);
+        let (secant, share) = (step * per_value, value * per_value);
+        let bend =
+            share * (value * (inverse - secant) - last * share * (before + inverse - (secant + secant)));
+        let linear = value * inverse;
+        // A bend is a small correction, and none is known before the second value.
         let is_small = (bend + bend).abs().is_less(linear.abs());
-        let interpolated = is_small.select(t - linear + bend, t - linear);
-        (secant - inverse).abs().is_at_most(most).select(interpolated, otherwise)
+        is_small.select(t - linear + bend, t - linear)
+    }
+
+    /// Puts the normals of rays that met the surface in their places: the directions of these gradients, where their squares neither overflow nor
+    /// underflow.
+    #[inline(always)]
+    fn put_normals<S: Simd>(&self, simd: S, gradients: [&Row; 3], normals: &mut [DVec3]) {
+        let mut units = [[0.0; ROW]; 4];
+        put_units(simd, gradients, &mut units);
+        let [x, y, z, are_plain] = &units;
+        for lane in 0..ROW {
+            if self.state[lane] == state::HIT && are_plain[lane] > 0.0 {
+                normals[self.places[lane] as usize] = DVec3::new(x[lane], y[lane], z[lane]);
+            }
+        }
     }
 }
 
@@ -204,23 +254,38 @@ pub(super) struct Pursuit<'a> {
     pub(super) start: &'a Start<'a>,
     pub(super) bundles: &'a mut [Bundle],
     pub(super) sight: &'a Sight,
-    pub(super) kernel: &'a dyn BatchKernel,
+    pub(super) slopes: &'a dyn BatchKernel,
+    pub(super) last: Last<'a>,
     pub(super) points: &'a mut PointBatch,
     pub(super) scratch: &'a mut Scratch,
+}
+
+/// What is taken where rays are likely to meet the surface.
+pub(super) enum Last<'a> {
+    /// F alone.
+    Value(&'a dyn BatchKernel),
+    /// F and its gradient, for the normals of a tile.
+    Gradient(&'a dyn BatchKernel, &'a mut [DVec3]),
 }
 
 /// How many bundles are pursued at once at most: as many as the nearest memory holds with all that is known of them.
 pub(super) const AT_ONCE: usize = 32;
 
+/// How many points a pursuit took: those where slopes were taken, and the others.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Taken {
+    pub(super) slopes: usize,
+    pub(super) last: usize,
+}
+
 impl WithSimd for Pursuit<'_> {
-    /// How many values of F it took.
-    type Output = usize;
+    type Output = Taken;
 
     /// Pursues all rays until they are free, hit or lost.
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> usize {
-        let Self { start, bundles, sight, kernel, points, scratch } = self;
-        let mut evaluations = 0;
+    fn with_simd<S: Simd>(self, simd: S) -> Taken {
+        let Self { start, bundles, sight, slopes, mut last, points, scratch } = self;
+        let mut taken = Taken::default();
         let (mut open, mut count) = ([0; AT_ONCE], 0);
         for (number, bundle) in bundles.iter_mut().enumerate() {
             if bundle.begin(simd, start) {
@@ -228,6 +293,7 @@ impl WithSimd for Pursuit<'_> {
                 count += 1;
             }
         }
+        let mut need = Need::Slopes;
         for _ in 0..STEPS {
             if count == 0 {
                 break;
@@ -236,20 +302,43 @@ impl WithSimd for Pursuit<'_> {
                 let Bundle { rays, t, .. } = &bundles[*number];
                 rays.at(simd, t, coordinates);
             }
-            evaluations += count * ROW;
-            let values = points.evaluate(kernel, scratch, 1);
-            let (rows, _) = values.as_chunks();
-            let mut kept = 0;
-            for (place, values) in rows.iter().enumerate() {
+            let found = match (need, &last) {
+                (Need::Slopes, _) => {
+                    for (directions, number) in points.rows_of_directions(count).zip(&open) {
+                        for (to, from) in directions.into_iter().zip(&bundles[*number].rays.directions) {
+                            *to = *from;
+                        }
+                    }
+                    points.slopes(slopes, scratch)
+                }
+                (_, Last::Value(kernel)) => points.evaluate(*kernel, scratch, 1),
+                (_, Last::Gradient(kernel, _)) => points.evaluate(*kernel, scratch, 4),
+            };
+            *(if need == Need::Slopes { &mut taken.slopes } else { &mut taken.last }) += count * ROW;
+            let (rows, _) = found.as_chunks();
+            let (mut kept, mut far) = (0, 0);
+            for place in 0..count {
                 let number = open[place];
-                if bundles[number].look(simd, values, sight) {
+                let bundle = &mut bundles[number];
+                let slopes = (need == Need::Slopes).then(|| &rows[count + place]);
+                let next = bundle.look(simd, &rows[place], slopes, sight);
+                if let (Need::Last, Last::Gradient(_, normals)) = (need, &mut last) {
+                    bundle.put_normals(
+                        simd,
+                        [&rows[count + place], &rows[2 * count + place], &rows[3 * count + place]],
+                        normals,
+                    );
+                }
+                if next != Need::Nothing {
                     open[kept] = number;
                     kept += 1;
+                    far += usize::from(next == Need::Slopes);
                 }
             }
+            need = if 2 * far > kept { Need::Slopes } else { Need::Last };
             count = kept;
         }
-        evaluations
+        taken
     }
 }
 
@@ -268,8 +357,11 @@ mod tests {
         5.0 - (1.0 - x * x - y * y).sqrt()
     }
 
+    /// How rays end, and the normals that were found on the way.
+    type Ends = (Vec<(usize, Result<Hit, Span>)>, Vec<DVec3>);
+
     /// Where rays parallel to z end that look for the unit sphere, by what processors do that `run` chooses.
-    fn ends_on_a_sphere(run: impl Fn(Pursuit<'_>) -> usize) -> Vec<(usize, Result<Hit, Span>)> {
+    fn ends_on_a_sphere(with_normals: bool, run: impl Fn(Pursuit<'_>) -> Taken) -> Ends {
         let program = Ast::parse("x^2 + y^2 + z^2").unwrap().lower(&[]).unwrap().minus_level(1.0);
         let raster = Raster::Parallel {
             middle: DVec3::new(0.0, 0.0, 5.0),
@@ -279,7 +371,7 @@ mod tests {
         };
         let tile = Tile::of(&raster, [-3.5, -3.5], 8, 8);
         let model = Model { t: 4.1, by_column: 0.0, by_row: 0.0, uncertainty: 0.2 };
-        let sight = Sight { inverse: -0.5, unevenness: 0.3, blur: 1e-15, tolerance: 1e-12 };
+        let sight = Sight { inverse: -0.5, unevenness: 0.3, bend: 0.5, blur: 1e-15, tolerance: 1e-12 };
         let mut bundles = vec![Bundle::default(); 9];
         for (row, bundle) in bundles.iter_mut().enumerate().take(8) {
             bundle.clear();
@@ -305,35 +397,55 @@ mod tests {
             middle: (3.5, 3.5),
             within: model.around(Span { start: 4.0, end: 4.4 }),
         };
-        let kernel = &*Interpreter.batch(&program).unwrap();
+        let [values, slopes, gradients] = [program.clone(), program.with_slope(), program.with_gradient()]
+            .map(|program| Interpreter.batch(&program.simplified()).unwrap());
+        let mut normals = vec![DVec3::NAN; tile.len()];
+        let last =
+            if with_normals { Last::Gradient(&*gradients, &mut normals) } else { Last::Value(&*values) };
         let (mut points, mut scratch) = (PointBatch::default(), Scratch::default());
-        let evaluations = run(Pursuit {
+        let taken = run(Pursuit {
             start,
             bundles: &mut bundles,
             sight: &sight,
-            kernel,
+            slopes: &*slopes,
+            last,
             points: &mut points,
             scratch: &mut scratch,
         });
-        assert!((3 * 64..8 * 64).contains(&evaluations), "{evaluations}");
+        // Rays of five rows meet the sphere, and those of two others are looked at.
+        assert!((2 * 56..3 * 56).contains(&taken.slopes), "{taken:?}");
+        assert!((40..2 * 40).contains(&taken.last), "{taken:?}");
         let hit = |end| match end {
             End::Hit(hit) => Ok(hit),
             End::Lost(stretch) => Err(stretch),
         };
-        bundles.iter().flat_map(Bundle::ends).map(|(place, end)| (place, hit(end))).collect()
+        let ends = bundles.iter().flat_map(Bundle::ends).map(|(place, end)| (place, hit(end))).collect();
+        (ends, normals)
     }
 
     #[test]
     fn rays_end_where_they_meet_the_sphere_on_any_processor() {
-        let found = ends_on_a_sphere(|pursuit| Arch::new().dispatch(pursuit));
-        assert_eq!(found, ends_on_a_sphere(|pursuit| pursuit.with_simd(Scalar::new())));
+        let (found, normals) = ends_on_a_sphere(true, |pursuit| Arch::new().dispatch(pursuit));
+        let (alone, none) = ends_on_a_sphere(false, |pursuit| Arch::new().dispatch(pursuit));
+        assert_eq!(found, alone, "normals change nothing");
+        assert!(none.iter().all(|normal| normal.is_nan()));
+        let bits = |normals: &[DVec3]| {
+            normals.iter().map(|normal| normal.to_array().map(f64::to_bits)).collect::<Vec<_>>()
+        };
+        let is_the_same = |(others, other_normals): Ends| {
+            assert_eq!((&found, bits(&normals)), (&others, bits(&other_normals)));
+        };
+        is_the_same(ends_on_a_sphere(true, |pursuit| pursuit.with_simd(Scalar::new())));
         #[cfg(target_arch = "x86_64")]
         if let Some(processor) = pulp::x86::V3::try_new() {
-            assert_eq!(found, ends_on_a_sphere(|pursuit| Simd::vectorize(processor, pursuit)));
+            is_the_same(ends_on_a_sphere(true, |pursuit| Simd::vectorize(processor, pursuit)));
         }
         assert_eq!(found.len(), 64 - 8 - 1, "the last row is free, and one lane has no ray");
-        for (place, hit) in found {
+        for (place, hit) in found.iter().copied() {
             let root = root_of(place);
+            let [x, y] = [place % 8, place / 8].map(|at| 0.05 * (at as f64 - 3.5));
+            let normal = DVec3::new(x, y, 5.0 - root);
+            assert_eq!(hit.is_ok(), normals[place].distance(normal) < 1e-12, "{place}");
             match hit {
                 Ok(Hit { t, bracket: Span { start, end } }) => {
                     assert!(start <= t && t <= end && end - start <= 1e-12, "{place}");

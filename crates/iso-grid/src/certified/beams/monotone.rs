@@ -1,7 +1,7 @@
 //! The roots of single rays of a beam along which F is monotone.
 
 use super::beam::Beam;
-use super::bundle::{AT_ONCE, Bundle, Pursuit, Sight, Start};
+use super::bundle::{AT_ONCE, Bundle, Last, Pursuit, Sight, Start};
 use super::form::{Form, Model, ROUNDING};
 use super::pixels::{Ended, halves_from};
 use super::rounding::Rounding;
@@ -32,9 +32,11 @@ impl Sight {
         let slope = form.slope;
         let least = (1.0 - ROUNDING) * (slope.middle.abs() - slope.radius);
         let blur = (1.0 + ROUNDING) * error / least;
+        let unevenness = (1.0 + ROUNDING) * slope.radius / least;
         (blur.is_finite() && least > 0.0).then(|| Self {
             inverse: 1.0 / slope.middle,
-            unevenness: (1.0 + ROUNDING) * slope.radius / least,
+            unevenness,
+            bend: unevenness / (form.reach.end - form.reach.start),
             blur,
             tolerance: tolerance.max(2.0 * ROUNDINGS * blur),
         })
@@ -116,16 +118,28 @@ impl Subdivision<'_> {
         let [across, along] = self.beam(part.beam).radii;
         let Workspace { arch, points, scratch, counters, .. } = &mut *self.workspace;
         let of_part = &self.kernels[kernels as usize];
+        // What is left of a formula in some place is compiled without its gradient.
+        let takes_gradients = self.normals.is_some() && kernels == 0;
+        let kernel_of_last = if takes_gradients { Kernel::Gradients } else { Kernel::Values };
+        let kernel = of_part.over_points(kernel_of_last);
+        let last = match &mut self.normals {
+            Some(normals) if takes_gradients => Last::Gradient(kernel, normals),
+            _ => Last::Value(kernel),
+        };
         let start = &Start {
             tile: &self.tile,
             model,
             middle: (column as f64 + across, row as f64 + along),
             within: model.around(part.stretch),
         };
-        let pursuit = Pursuit { start, bundles, sight, kernel: of_part.points(), points, scratch };
-        let evaluations = arch.dispatch(pursuit);
-        counters.trace_evaluations += evaluations as u64;
-        counters.operations += of_part.charge(Kernel::Values, evaluations);
+        let slopes = of_part.over_points(Kernel::Slopes);
+        let taken = arch.dispatch(Pursuit { start, bundles, sight, slopes, last, points, scratch });
+        counters.trace_evaluations += (taken.slopes + taken.last) as u64;
+        if takes_gradients {
+            counters.gradient_evaluations += taken.last as u64;
+        }
+        counters.operations += of_part.charge(Kernel::Slopes, taken.slopes);
+        counters.operations += of_part.charge(kernel_of_last, taken.last);
     }
 
     /// What values by kernels of this number say over a part. `None` when rounding is not bounded there.

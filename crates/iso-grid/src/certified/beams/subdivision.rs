@@ -75,6 +75,8 @@ pub(in crate::certified) struct Subdivision<'a> {
     pub(super) workspace: &'a mut Workspace,
     pub(super) tile: Tile<'a>,
     pub(super) outcomes: &'a mut [Outcome],
+    /// Those of rays that were found on the way, if they are wanted.
+    pub(super) normals: Option<&'a mut [DVec3]>,
     pub(super) memory: Memory,
     /// Kernels by number. The first hold everywhere.
     pub(super) kernels: Vec<Arc<Kernels>>,
@@ -91,7 +93,7 @@ impl<'a> Subdivision<'a> {
         certified: &'a Certified,
         workspace: &'a mut Workspace,
         tile: Tile<'a>,
-        outcomes: &'a mut [Outcome],
+        (outcomes, normals): (&'a mut [Outcome], Option<&'a mut [DVec3]>),
     ) -> Option<Self> {
         let is_finite = match tile.rays {
             Rays::Raster { .. } => true,
@@ -123,6 +125,7 @@ impl<'a> Subdivision<'a> {
             workspace,
             tile,
             outcomes,
+            normals,
             memory,
             kernels,
             faces: FxHashMap::default(),
