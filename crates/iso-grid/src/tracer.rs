@@ -48,7 +48,7 @@ pub trait Tracer: Send + Sync {
     /// where in its bracket a root is placed, and how wide the bracket is, may depend on the other rays of the tile.
     ///
     /// With `normals`, of which there are as many, a method puts those of hits in their places that it comes by on the way: the unit normal ∇F/|∇F| at
-    /// a point of the ray no farther from the hit than its bracket is wide. It leaves all others as they are.
+    /// a point of the ray no farther from the hit than brackets may be wide. It leaves all others as they are.
     fn trace_tile(
         &self,
         workspace: &mut Workspace,

@@ -30,6 +30,8 @@ pub(crate) struct Bundle {
     value: Row,
     inverse: Row,
     step: Row,
+    /// How far t is from where F was taken last.
+    moved: Row,
     state: Row,
 }
 
@@ -178,7 +180,9 @@ impl Bundle {
             let was_open = before.is_same(open);
             let is_found = was_open & state.is_same(hit);
             let follows = is_found.select(nearer.between(root[0], root[1]), next);
-            was_open.select(follows, t).put(&mut self.t, part);
+            let follows = was_open.select(follows, t);
+            follows.put(&mut self.t, part);
+            (follows - t).abs().put(&mut self.moved, part);
             for (end, side) in self.wanted.iter_mut().enumerate() {
                 is_found.select(root[end], wanted[end]).put(side, part);
             }
@@ -224,15 +228,16 @@ impl Bundle {
         is_small.select(t - linear + bend, t - linear)
     }
 
-    /// Puts the normals of rays that met the surface in their places: the directions of these gradients, where their squares neither overflow nor
-    /// underflow.
+    /// Puts the normals of rays in their places that meet the surface within `distance` of where these gradients were taken: their directions,
+    /// where squares neither overflow nor underflow.
     #[inline(always)]
-    fn put_normals<S: Simd>(&self, simd: S, gradients: [&Row; 3], normals: &mut [DVec3]) {
+    fn put_normals<S: Simd>(&self, simd: S, (gradients, distance): ([&Row; 3], f64), normals: &mut [DVec3]) {
         let mut units = [[0.0; ROW]; 4];
         put_units(simd, gradients, &mut units);
         let [x, y, z, are_plain] = &units;
         for lane in 0..ROW {
-            if self.state[lane] == state::HIT && are_plain[lane] > 0.0 {
+            let is_there = self.state[lane] == state::HIT && self.moved[lane] <= distance;
+            if is_there && are_plain[lane] > 0.0 {
                 normals[self.places[lane] as usize] = DVec3::new(x[lane], y[lane], z[lane]);
             }
         }
@@ -323,11 +328,8 @@ impl WithSimd for Pursuit<'_> {
                 let slopes = (need == Need::Slopes).then(|| &rows[count + place]);
                 let next = bundle.look(simd, &rows[place], slopes, sight);
                 if let (Need::Last, Last::Gradient(_, normals)) = (need, &mut last) {
-                    bundle.put_normals(
-                        simd,
-                        [&rows[count + place], &rows[2 * count + place], &rows[3 * count + place]],
-                        normals,
-                    );
+                    let gradients = [1, 2, 3].map(|axis| &rows[axis * count + place]);
+                    bundle.put_normals(simd, (gradients, sight.tolerance), normals);
                 }
                 if next != Need::Nothing {
                     open[kept] = number;
