@@ -260,7 +260,7 @@ impl Wanted<'_> {
             (Given::Direction, _) if !self.is_parallel() => (false, "each ray has its own"),
             (Given::Direction, _) if self.kernel(Kernel::ParallelForms).0 => (
                 true,
-                "F is differentiated along it, once instead of three times; a number that forms take, so another view compiles nothing",
+                "F is differentiated along it, once instead of three times; a number that kernels take, so another view compiles nothing",
             ),
             (Given::Direction, _) => {
                 (false, "all rays share one; kernels take points, so another view compiles nothing")
