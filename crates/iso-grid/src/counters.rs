@@ -11,9 +11,9 @@ pub struct Counters {
     pub rays_in_region: u64,
     /// Evaluations of F at points while preprocessing.
     pub preprocess_evaluations: u64,
-    /// Evaluations of F at points while tracing, samples and root finding alike.
+    /// Evaluations of F at points while tracing, samples and root finding alike, with its slope or without.
     pub trace_evaluations: u64,
-    /// Evaluations of F and its gradient at points.
+    /// Evaluations of F and its gradient at points. Those that find a root and its normal at once are evaluations while tracing, too.
     pub gradient_evaluations: u64,
     /// Enclosures of F, or of F and its gradient, over boxes.
     pub box_evaluations: u64,
