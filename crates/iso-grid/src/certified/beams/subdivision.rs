@@ -218,7 +218,11 @@ impl<'a> Subdivision<'a> {
 
     /// Whether some ray of `area` is still followed.
     pub(super) fn is_open(&self, area: Area) -> bool {
-        area.rows().any(|row| self.memory.open[row * self.tile.width()..][area.columns()].contains(&true))
+        area.rows().any(|row| {
+            let open = &self.memory.open[row * self.tile.width()..][area.columns()];
+            // Not searched, for most areas are open or closed as a whole, and this is done side by side.
+            open.iter().fold(false, |any, is_open| any | is_open)
+        })
     }
 
     /// Cuts a stretch when it is longer than the beam is wide, or else the beam.
