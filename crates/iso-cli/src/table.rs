@@ -344,5 +344,6 @@ mod tests {
             assert!(text.len() < 26, "{text}");
         }
         assert_eq!(digits(f64::NAN), "nan");
+        assert_eq!([digits(0.1_f32), digits(-1e-6_f32)], ["0.1", "-1e-6"]);
     }
 }

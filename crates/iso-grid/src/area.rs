@@ -20,6 +20,11 @@ impl Area {
         self.row..self.row + self.height
     }
 
+    /// The places of its rays in a tile of so many columns, row by row.
+    pub(crate) fn places(self, width: usize) -> impl Iterator<Item = usize> {
+        self.rows().flat_map(move |row| self.columns().map(move |column| row * width + column))
+    }
+
     /// Columns and rows of the corners, left to right and top to bottom.
     pub(crate) fn corners(self) -> [(usize, usize); 4] {
         let (left, right) = (self.column, self.column + self.width.saturating_sub(1));

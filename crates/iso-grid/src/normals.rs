@@ -63,24 +63,18 @@ pub fn other_normals(
         "each ray has an outcome and a normal"
     );
     let shorter = tracer.filter(|_| surface.program().has_branches());
-    let side = if shorter.is_some() { BLOCK } else { tile.width().max(tile.height()) };
+    let side = if shorter.is_some() { BLOCK } else { usize::MAX };
     let mut asked = std::mem::take(&mut workspace.asked);
     let mut others = Vec::new();
     asked.clear();
     for block in (Area { column: 0, row: 0, width: tile.width(), height: tile.height() }).blocks(side) {
         let first = asked.len();
-        for row in block.rows() {
-            for place in block.columns().map(|column| row * tile.width() + column) {
-                match outcomes[place] {
-                    Outcome::Hit(Hit { t, .. }) if normals[place].x.is_nan() => {
-                        asked.push(Asked { place, t })
-                    }
-                    // The gradient there may be nothing but rounding.
-                    Outcome::Touch(Hit { bracket, .. }) if normals[place].x.is_nan() => {
-                        others.push(Met { place, bracket });
-                    }
-                    _ => {}
-                }
+        for place in block.places(tile.width()).filter(|place| normals[*place].x.is_nan()) {
+            match outcomes[place] {
+                Outcome::Hit(Hit { t, .. }) => asked.push(Asked { place, t }),
+                // The gradient there may be nothing but rounding.
+                Outcome::Touch(Hit { bracket, .. }) => others.push(Met { place, bracket }),
+                _ => {}
             }
         }
         if let Some(kernel) = shorter.and_then(|tracer| kernel_on(tracer, tile, &asked[first..])) {
@@ -108,7 +102,7 @@ pub fn other_normals(
 }
 
 /// A point at which a normal is asked for: where on the ray of this place in a tile.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Asked {
     place: usize,
     t: f64,

@@ -94,3 +94,15 @@ fn normals_found_on_the_way_are_those_of_the_hits_and_change_no_outcome() {
         }
     }
 }
+
+#[test]
+fn no_rays_have_no_normals() {
+    let program = Ast::parse("x^2 + y^2 + z^2 = 1").unwrap().lower(&[]).unwrap().program().simplified();
+    let surface = Surface::new(Arc::new(Interpreter), program);
+    let raster =
+        Raster::Parallel { middle: DVec3::ZERO, right: DVec3::X, down: DVec3::Y, direction: DVec3::Z };
+    for (width, height) in [(0, 0), (0, 3), (3, 0)] {
+        let tile = Tile::of(&raster, [0.0, 0.0], width, height);
+        normals(&surface, None, &mut Workspace::default(), tile, &[], &mut []).unwrap();
+    }
+}

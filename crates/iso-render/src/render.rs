@@ -80,9 +80,8 @@ pub fn render_over(
     tiles(size).into_par_iter().try_for_each_init(Tile::default, |tile, area| {
         tile.render(scene, size, area)?;
         let band = &bands[(area.row / TILE) as usize];
-        let mut band = band.lock().expect("no thread panics while it holds a band");
-        tile.put(&mut band, scene.camera, size);
-        drop(band);
+        let whole = "no thread panics while it holds a band";
+        tile.put(&mut band.lock().expect(whole), scene.camera, size);
         if tile.content != Content::Unfinished {
             let mut work = work.lock().expect("no thread panics while it holds the sums");
             work.add(tile);
@@ -162,6 +161,7 @@ struct Tile {
 impl Tile {
     /// Finds out about its pixels, unless work is stopped before that is done.
     fn render(&mut self, scene: &Scene<'_>, size: Size, area: Area) -> Result<(), RenderError> {
+        // Where nothing was found, no normal was.
         let is_clear = self.content == Content::Nothing;
         (self.area, self.content) = (area, Content::Unfinished);
         let stop = scene.surface.stop();

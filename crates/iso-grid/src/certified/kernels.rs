@@ -268,11 +268,6 @@ impl Kernels {
         self.formula.surface.program()
     }
 
-    /// F at points.
-    pub(super) fn points(&self) -> &dyn BatchKernel {
-        self.over_points(Kernel::Values)
-    }
-
     /// One of the kernels over points.
     pub(super) fn over_points(&self, kernel: Kernel) -> &dyn BatchKernel {
         &**compiled(self.formula.surface().over_points(kernel))

@@ -51,10 +51,9 @@ mod state {
 const NEAR: f64 = 64.0;
 
 /// What is to be taken of F next along the rays of a bundle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Need {
     /// Nothing: no ray is open.
-    #[default]
     Nothing,
     /// Its value and its slope, to come nearer.
     Slopes,
@@ -423,6 +422,27 @@ mod tests {
         };
         let ends = bundles.iter().flat_map(Bundle::ends).map(|(place, end)| (place, hit(end))).collect();
         (ends, normals)
+    }
+
+    #[test]
+    fn normals_are_those_of_gradients_next_to_the_hit_alone() {
+        let simd = Scalar::new();
+        let (wanted, reach) = (Span { start: 0.5, end: 1.5 }, Span { start: 0.0, end: 2.0 });
+        let mut bundle = Bundle::default();
+        bundle.clear();
+        bundle.put(0, (1, 0, 0), [wanted, reach]);
+        // F is t − 1, and was not taken near its root.
+        (bundle.t[0], bundle.inverse[0]) = (1.0 + 1e-6, 1.0);
+        let sight = Sight { inverse: 1.0, unevenness: 1e-9, bend: 1e-9, blur: 0.0, tolerance: 1e-12 };
+        let (x, yz) = ([2.0; ROW], [0.0; ROW]);
+        let mut normals = [DVec3::NAN; 3];
+        for expected in [DVec3::NAN, DVec3::X] {
+            let value = [bundle.t[0] - 1.0; ROW];
+            assert_eq!(bundle.look(simd, &value, None, &sight), Need::Nothing, "the root is proven");
+            bundle.put_normals(simd, ([&x, &yz, &yz], sight.tolerance), &mut normals);
+            assert_eq!(normals[1].to_array().map(f64::to_bits), expected.to_array().map(f64::to_bits));
+        }
+        assert!(normals[0].is_nan() && normals[2].is_nan());
     }
 
     #[test]

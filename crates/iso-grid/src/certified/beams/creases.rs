@@ -154,7 +154,7 @@ impl Subdivision<'_> {
         points.replace(std::iter::once((&ray, t)));
         counters.trace_evaluations += 1;
         counters.operations += kernels.charge(Kernel::Values, 1);
-        points.evaluate(kernels.points(), scratch, 1)[0]
+        points.evaluate(kernels.over_points(Kernel::Values), scratch, 1)[0]
     }
 }
 

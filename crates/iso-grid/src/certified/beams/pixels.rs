@@ -124,7 +124,7 @@ impl Subdivision<'_> {
         points.replace(pixels.iter().map(|pixel| (&pixel.ray, pixel.t)));
         counters.trace_evaluations += pixels.len() as u64;
         counters.operations += of_part.charge(Kernel::Values, pixels.len());
-        let values = points.evaluate(of_part.points(), scratch, 1);
+        let values = points.evaluate(of_part.over_points(Kernel::Values), scratch, 1);
         let mut kept = 0;
         for number in 0..pixels.len() {
             let pixel = &mut pixels[number];
