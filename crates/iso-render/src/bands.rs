@@ -10,6 +10,7 @@ use crate::{Picture, Status};
 
 /// Some rows of every layer of a picture; layers that the picture does not keep are empty.
 pub(crate) struct Band<'a> {
+    is_clear: bool,
     pub(crate) color: &'a mut [[u8; 3]],
     pub(crate) depth: &'a mut [f64],
     pub(crate) normals: &'a mut [Vec3],
@@ -31,6 +32,7 @@ impl<'a> Band<'a> {
         let mut outcomes = cut(&mut picture.outcomes, pixels);
         let band = || {
             Mutex::new(Self {
+                is_clear: false,
                 color: color(),
                 depth: depth(),
                 normals: normals(),
@@ -40,6 +42,20 @@ impl<'a> Band<'a> {
             })
         };
         repeat_with(band).take(count as usize).collect()
+    }
+
+    /// Says of all pixels that nothing is there, if that was not done before. Colours are left as they are.
+    ///
+    /// Whole rows take a third of the time that their parts take tile by tile.
+    pub(crate) fn clear(&mut self) {
+        if !self.is_clear {
+            self.is_clear = true;
+            self.depth.fill(f64::NAN);
+            self.normals.fill(Vec3::NAN);
+            self.points.fill(DVec3::NAN);
+            self.statuses.fill(Status::Miss);
+            self.outcomes.fill(Outcome::Miss);
+        }
     }
 }
 

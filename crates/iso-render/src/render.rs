@@ -47,6 +47,9 @@ pub enum RenderError {
 /// Width and height of a tile: small enough to balance cores, large enough to fill batches.
 const TILE: u32 = 64;
 
+/// Why what threads share is always whole.
+const UNHARMED: &str = "no thread panics while it holds a lock";
+
 /// Renders `scene` at `size` on the threads of the current rayon pool, keeping the layers of its plan.
 ///
 /// The picture is the same bit for bit whatever the number of threads.
@@ -77,20 +80,23 @@ pub fn render_over(
     picture.make_room(layers).ok_or(RenderError::OutOfMemory(size))?;
     let bands = Band::all(picture, TILE);
     let work = Mutex::new(Work::default());
-    tiles(size).into_par_iter().try_for_each_init(Tile::default, |tile, area| {
+    let idle = Mutex::new(Vec::<Tile>::new());
+    // One by one, so that at the end no thread is left with many.
+    tiles(size).into_par_iter().with_max_len(1).try_for_each(|area| {
+        let mut tile = idle.lock().expect(UNHARMED).pop().unwrap_or_default();
         tile.render(scene, size, area)?;
         let band = &bands[(area.row / TILE) as usize];
-        let whole = "no thread panics while it holds a band";
-        tile.put(&mut band.lock().expect(whole), scene.camera, size);
+        tile.put(&mut band.lock().expect(UNHARMED), scene.camera, size);
         if tile.content != Content::Unfinished {
-            let mut work = work.lock().expect("no thread panics while it holds the sums");
-            work.add(tile);
+            let mut work = work.lock().expect(UNHARMED);
+            work.add(&tile);
             progress(work.pixels, size.pixels() as u64);
         }
+        idle.lock().expect(UNHARMED).push(tile);
         Ok::<(), RenderError>(())
     })?;
     drop(bands);
-    let work = work.into_inner().expect("no thread panics while it holds the sums");
+    let work = work.into_inner().expect(UNHARMED);
     work.note(picture, watch.elapsed());
     Ok(())
 }
@@ -130,20 +136,8 @@ enum Content {
     Found,
 }
 
-/// What stands for a pixel of which there is nothing to say.
-struct Mark {
-    depth: f64,
-    normal: Vec3,
-    status: Status,
-}
-
-impl Mark {
-    const NOTHING: Self = Self { depth: f64::NAN, normal: Vec3::NAN, status: Status::Miss };
-    const UNFINISHED: Self =
-        Self { depth: f64::NEG_INFINITY, normal: Vec3::ZERO, status: Status::Unfinished };
-}
-
-/// A thread's part of the picture, rows from top to bottom: one tile after the other.
+/// The part of the picture that a thread works on, rows from top to bottom: one after the other, in the same memory, for to
+/// come by new memory takes longer than many a tile.
 #[derive(Default)]
 struct Tile {
     workspace: Workspace,
@@ -221,39 +215,28 @@ impl Tile {
     /// Puts the layers in their place in the band that holds the tile.
     fn put(&self, band: &mut Band<'_>, camera: &Camera, size: Size) {
         let Self { color, normals, outcomes, area, .. } = self;
-        match self.content {
-            Content::Unfinished => {
-                self.fill_layer(Picture::UNFINISHED, band.color, size);
-                self.fill(&Mark::UNFINISHED, band, size);
-            }
-            Content::Nothing => {
-                self.put_layer(band.color, size, |place| color[place]);
-                self.fill(&Mark::NOTHING, band, size);
-            }
-            Content::Found => {
-                let point = |place: usize, t| {
-                    let (column, row) = (place as u32 % area.width, place as u32 / area.width);
-                    camera.ray(area.column + column, area.row + row).at(t)
-                };
-                self.put_layer(band.color, size, |place| color[place]);
-                self.put_layer(band.depth, size, |place| found(&outcomes[place]).unwrap_or(f64::NAN));
-                self.put_layer(band.normals, size, |place| normals[place].as_vec3());
-                self.put_layer(band.points, size, |place| {
-                    found(&outcomes[place]).map_or(DVec3::NAN, |t| point(place, t))
-                });
-                self.put_layer(band.statuses, size, |place| Status::from(&outcomes[place]));
-                self.put_layer(band.outcomes, size, |place| outcomes[place]);
-            }
+        band.clear();
+        if self.content == Content::Unfinished {
+            self.fill_layer(Picture::UNFINISHED, band.color, size);
+            self.fill_layer(f64::NEG_INFINITY, band.depth, size);
+            self.fill_layer(Vec3::ZERO, band.normals, size);
+            self.fill_layer(Status::Unfinished, band.statuses, size);
+            return;
         }
-    }
-
-    /// Fills all layers but that of colours.
-    fn fill(&self, mark: &Mark, band: &mut Band<'_>, size: Size) {
-        self.fill_layer(mark.depth, band.depth, size);
-        self.fill_layer(mark.normal, band.normals, size);
-        self.fill_layer(DVec3::NAN, band.points, size);
-        self.fill_layer(mark.status, band.statuses, size);
-        self.fill_layer(Outcome::Miss, band.outcomes, size);
+        self.put_layer(band.color, size, |place| color[place]);
+        if self.content == Content::Found {
+            let point = |place: usize, t| {
+                let (column, row) = (place as u32 % area.width, place as u32 / area.width);
+                camera.ray(area.column + column, area.row + row).at(t)
+            };
+            self.put_layer(band.depth, size, |place| found(&outcomes[place]).unwrap_or(f64::NAN));
+            self.put_layer(band.normals, size, |place| normals[place].as_vec3());
+            self.put_layer(band.points, size, |place| {
+                found(&outcomes[place]).map_or(DVec3::NAN, |t| point(place, t))
+            });
+            self.put_layer(band.statuses, size, |place| Status::from(&outcomes[place]));
+            self.put_layer(band.outcomes, size, |place| outcomes[place]);
+        }
     }
 
     /// Puts what is known of each of the tile's pixels into one layer, if the picture keeps it.
