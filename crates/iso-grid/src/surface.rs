@@ -2,13 +2,10 @@
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use iso_expr::{BatchKernel, BoxKernel, CompileError, Engine, Interval, Program};
+use iso_expr::{BatchKernel, BoxKernel, CompileError, Engine, Program};
 
 use crate::certified::Cells;
 use crate::{Kernel, Region, Stop};
-
-/// Differentiating a program takes about so much longer than shortening its derivative on a box.
-const MUCH_SHORTER: usize = 6;
 
 /// The kernels of F − C and of its gradient. Each is compiled when it is first asked for, and F − C is differentiated when
 /// the first that takes its gradient is.
@@ -21,8 +18,6 @@ pub struct Surface {
     /// The engine for kernels that are run often, where that is another one.
     many: Option<Arc<dyn Engine>>,
     value: Program,
-    /// The surface of which this is what is left on a box.
-    outer: Option<(Arc<Surface>, [Interval; 3])>,
     programs: Arc<Programs>,
     kernels: Arc<Compiled>,
     cells: Arc<Mutex<Option<CellsOfRegion>>>,
@@ -63,7 +58,6 @@ impl Surface {
             engine,
             many: None,
             value,
-            outer: None,
             programs: Arc::default(),
             kernels: Arc::default(),
             cells: Arc::default(),
@@ -95,14 +89,6 @@ impl Surface {
         }
     }
 
-    /// The same surface on a box, where F comes to something [shorter](Program::shortened); `None` where it does not. Its kernels
-    /// are made for few runs.
-    pub(crate) fn shortened(self: &Arc<Self>, domain: [Interval; 3]) -> Option<Self> {
-        let value = self.value.shortened(domain)?;
-        let outer = Some((Arc::clone(self), domain));
-        Some(Self { outer, ..Self::new(self.engine.for_few_runs(), value).stopped_by(self.stop.clone()) })
-    }
-
     /// A surface that is this one in some places, where F − C comes to `value`. Its kernels are made for few runs.
     pub(crate) fn reduced_to(&self, value: Program) -> Self {
         let many = Some(Arc::clone(self.many.as_ref().unwrap_or(&self.engine)));
@@ -128,19 +114,16 @@ impl Surface {
     pub fn program_of(&self, kernel: Kernel) -> &Program {
         match kernel {
             Kernel::Values | Kernel::ValueEnclosures => &self.value,
-            Kernel::Gradients | Kernel::GradientEnclosures => self
-                .programs
-                .gradient
-                .get_or_init(|| self.derived(kernel, || self.value.with_gradient().simplified())),
+            Kernel::Gradients | Kernel::GradientEnclosures => {
+                self.programs.gradient.get_or_init(|| self.value.with_gradient().simplified())
+            }
             Kernel::Slopes => self.programs.slope.get_or_init(|| self.value.with_slope().simplified()),
-            Kernel::RoundingBounds => self
-                .programs
-                .rounding
-                .get_or_init(|| self.derived(kernel, || self.value.with_rounding().simplified())),
-            Kernel::HessianEnclosures => self
-                .programs
-                .hessian
-                .get_or_init(|| self.derived(kernel, || self.value.with_hessian().simplified())),
+            Kernel::RoundingBounds => {
+                self.programs.rounding.get_or_init(|| self.value.with_rounding().simplified())
+            }
+            Kernel::HessianEnclosures => {
+                self.programs.hessian.get_or_init(|| self.value.with_hessian().simplified())
+            }
             Kernel::Forms => self.programs.forms.get_or_init(|| {
                 let forms = self.program_of(Kernel::Gradients).with_forms();
                 forms.expect("derivatives of what has forms have forms")
@@ -149,17 +132,6 @@ impl Surface {
                 let forms = self.program_of(Kernel::Slopes).with_forms();
                 forms.expect("derivatives of what has forms have forms")
             }),
-        }
-    }
-
-    /// The program of a kernel: what that of the larger box comes to, or made anew, whichever takes less time.
-    fn derived(&self, kernel: Kernel, make: impl FnOnce() -> Program) -> Program {
-        match &self.outer {
-            Some((outer, domain)) if outer.value.nodes().len() < MUCH_SHORTER * self.value.nodes().len() => {
-                let program = outer.program_of(kernel);
-                program.shortened_over_boxes(*domain).unwrap_or_else(|| program.clone())
-            }
-            _ => make(),
         }
     }
 

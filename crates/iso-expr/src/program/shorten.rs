@@ -7,13 +7,34 @@ use crate::{Constant, Decorated, Decoration, Interval, Operation};
 /// A program is rebuilt when it keeps no more than this part of its nodes, or loses its last branch.
 const WORTHWHILE: f64 = 0.6;
 
-/// What a program that is shortened still computes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kept {
-    /// The same doubles, signs of zeros included.
-    Doubles,
-    /// The same real functions.
-    RealFunctions,
+/// What matters of a node's value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Demand {
+    /// It is not asked for.
+    Nothing,
+    /// Whether it is less than this number, equal or greater.
+    Side(f64),
+    /// The value itself.
+    Value,
+}
+
+impl Demand {
+    /// What matters when both do.
+    fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Nothing, demand) | (demand, Self::Nothing) => demand,
+            _ if self == other => self,
+            _ => Self::Value,
+        }
+    }
+
+    /// What matters of the negative.
+    fn negated(self) -> Self {
+        match self {
+            Self::Side(of) => Self::Side(-of),
+            demand => demand,
+        }
+    }
 }
 
 /// What an operation comes to on a box.
@@ -27,36 +48,43 @@ enum Decision {
     Constant(f64),
 }
 
+/// What a box makes of a program, node by node.
+struct Findings {
+    enclosures: Vec<Decorated>,
+    demands: Vec<Demand>,
+    decisions: Vec<Option<Decision>>,
+}
+
 impl Program {
-    /// A program that computes, at every point of the box `domain`, the same doubles as this one, and means the same real
-    /// function there, with what the box decides left out: the branches of minima, maxima and choices that are never taken,
-    /// absolute values of what keeps its sign, steps without a step inside. `None` when that would neither be
-    /// much shorter nor lose the last branch.
+    /// A program whose output is negative, zero or positive, in doubles and as a real function, wherever that of this one is on the
+    /// box `domain`, and undefined wherever it is, with what the box decides left out: the branches of minima, maxima and choices that
+    /// are never taken, or that do not matter to the sign; absolute values of what keeps its sign, steps without a step inside.
+    /// `None` when that would neither be much shorter nor lose the last branch.
+    ///
+    /// Where the two functions are zero they have the same derivatives, for what is left out of a minimum is either greater than what is left or
+    /// positive.
     ///
     /// What is left out is defined and bounded all over the box, so that it could not have made anything undefined. This is
     /// the 'shortened tape' of Keeter (Massively Parallel Rendering of Complex Closed-Form Implicit Surfaces, 2020), with
-    /// enclosures rounded outwards, so that it holds for doubles and for real numbers alike.
+    /// enclosures rounded outwards, so that it holds for doubles and for real numbers alike, and goes beyond it: there all values are kept.
+    ///
+    /// # Panics
+    /// When the program has another number of outputs than one.
     pub fn shortened(&self, domain: [Interval; 3]) -> Option<Self> {
-        self.shortened_keeping(domain, Kept::Doubles)
-    }
-
-    /// The same for a program that is evaluated over boxes alone, where zeros have no sign: what is zero all over the box is left
-    /// out of sums, and what it is multiplied with is left out with it.
-    pub fn shortened_over_boxes(&self, domain: [Interval; 3]) -> Option<Self> {
-        self.shortened_keeping(domain, Kept::RealFunctions)
-    }
-
-    fn shortened_keeping(&self, domain: [Interval; 3], kept: Kept) -> Option<Self> {
-        let decisions = self.decisions(domain, kept);
-        let needed = self.needed_after(&decisions);
+        assert_eq!(self.outputs.len(), 1, "the sign of one output is kept");
+        let findings = self.findings(domain);
+        let is_needed = |(demand, decision): (&Demand, &Option<Decision>)| {
+            *demand != Demand::Nothing && !matches!(decision, Some(Decision::Operand(_)))
+        };
+        let needed: Vec<bool> = findings.demands.iter().zip(&findings.decisions).map(is_needed).collect();
         let kept = needed.iter().filter(|needed| **needed).count();
         let is_open = |(node, (decision, needed)): (&Node, (&Option<Decision>, &bool))| {
             *needed && decision.is_none() && node.may_be_decided()
         };
-        let has_branches = || self.nodes.iter().zip(decisions.iter().zip(&needed)).any(is_open);
+        let has_branches = || self.nodes.iter().zip(findings.decisions.iter().zip(&needed)).any(is_open);
         let loses_branches = || self.has_branches() && !has_branches();
         let is_worthwhile = kept as f64 <= WORTHWHILE * self.nodes.len() as f64 || loses_branches();
-        is_worthwhile.then(|| self.rebuilt(&decisions, &needed, kept))
+        is_worthwhile.then(|| self.rebuilt(&findings.decisions, &needed, kept))
     }
 
     /// Whether it holds an operation that a box may decide.
@@ -64,54 +92,42 @@ impl Program {
         self.nodes.iter().any(Node::may_be_decided)
     }
 
-    /// What the box decides, node by node.
-    fn decisions(&self, domain: [Interval; 3], kept: Kept) -> Vec<Option<Decision>> {
-        let mut enclosures: Vec<Decorated> = Vec::with_capacity(self.nodes.len());
-        let decide = |node: &Node| {
-            let (enclosure, decision) = match *node {
-                Node::Variable(argument) => {
-                    let Interval { lo, hi } = domain[argument.index()];
-                    (Decorated::argument(lo, hi), None)
-                }
-                Node::Constant(constant) => (Decorated::constant(constant.enclosure()), None),
-                Node::Apply(operation, operands) => {
-                    let operands = operands.map(|operand| enclosures[operand.index()]);
-                    let enclosure = operation.extension().of(operands);
-                    let decision = decision(operation, operands, enclosure);
-                    (enclosure, decision.or_else(|| kept.decision(operation, operands, enclosure)))
-                }
-            };
-            enclosures.push(enclosure);
-            decision
+    /// What a box decides: enclosures from the arguments on, and decisions from the output back to what is asked for.
+    fn findings(&self, domain: [Interval; 3]) -> Findings {
+        let mut findings = Findings {
+            enclosures: self.enclosures(domain),
+            demands: vec![Demand::Nothing; self.nodes.len()],
+            decisions: vec![None; self.nodes.len()],
         };
-        self.nodes.iter().map(decide).collect()
-    }
-
-    /// For each node whether an output is computed from it when the rest is left out.
-    fn needed_after(&self, decisions: &[Option<Decision>]) -> Vec<bool> {
-        let mut needed = vec![false; self.nodes.len()];
-        // A node that comes to one of its operands only passes the need on.
-        let mut asked = vec![false; self.nodes.len()];
         for output in &self.outputs {
-            asked[output.index()] = true;
+            findings.demands[output.index()] = Demand::Side(0.0);
         }
         for (id, node) in self.iter().rev() {
-            if !asked[id.index()] {
-                continue;
-            }
-            let operands = node.operands();
-            needed[id.index()] = !matches!(decisions[id.index()], Some(Decision::Operand(_)));
-            let asks = match decisions[id.index()] {
-                Some(Decision::Operand(number)) => &operands[number..=number],
-                Some(Decision::Negated) => &operands[..1],
-                Some(Decision::Constant(_)) => &[],
-                None => operands,
-            };
-            for operand in asks {
-                asked[operand.index()] = true;
+            if let (Node::Apply(operation, operands), true) =
+                (node, findings.demands[id.index()] != Demand::Nothing)
+            {
+                findings.decide(self, id, *operation, operands);
             }
         }
-        needed
+        findings
+    }
+
+    /// Encloses each node over a box.
+    fn enclosures(&self, domain: [Interval; 3]) -> Vec<Decorated> {
+        let mut enclosures: Vec<Decorated> = Vec::with_capacity(self.nodes.len());
+        for node in &self.nodes {
+            enclosures.push(match *node {
+                Node::Variable(argument) => {
+                    let Interval { lo, hi } = domain[argument.index()];
+                    Decorated::argument(lo, hi)
+                }
+                Node::Constant(constant) => Decorated::constant(constant.enclosure()),
+                Node::Apply(operation, operands) => {
+                    operation.extension().of(operands.map(|operand| enclosures[operand.index()]))
+                }
+            });
+        }
+        enclosures
     }
 
     /// The program with the decided operations replaced, as far as it is needed, and constants folded. Nodes are not compared
@@ -119,6 +135,7 @@ impl Program {
     fn rebuilt(&self, decisions: &[Option<Decision>], needed: &[bool], count: usize) -> Self {
         let mut program = Self { nodes: Vec::with_capacity(count), ..Self::new() };
         let mut places = vec![NodeId(0); self.nodes.len()];
+        let mut is_folded = false;
         for (index, node) in self.nodes.iter().enumerate() {
             let decision = decisions[index];
             if let (Some(Decision::Operand(number)), Node::Apply(_, operands)) = (decision, node) {
@@ -138,12 +155,13 @@ impl Program {
                     }
                     _ => None,
                 };
+                is_folded |= folded.is_some();
                 places[index] = NodeId(program.nodes.len() as u32);
                 program.nodes.push(folded.map_or(node, Node::Constant));
             }
         }
         program.outputs = self.outputs.iter().map(|output| places[output.index()]).collect();
-        program.pruned()
+        if is_folded { program.pruned() } else { program }
     }
 }
 
@@ -158,6 +176,44 @@ impl Node {
     }
 }
 
+impl Findings {
+    /// Decides a node, and notes what that asks of its operands.
+    fn decide(&mut self, program: &Program, id: NodeId, operation: Operation, operands: &[NodeId; 3]) {
+        use Operation as O;
+        let demand = self.demands[id.index()];
+        let enclosures = operands.map(|operand| self.enclosures[operand.index()]);
+        let decision =
+            decision(operation, enclosures, self.enclosures[id.index()]).or_else(|| match demand {
+                Demand::Side(of) => decision_by_side(operation, enclosures, of),
+                _ => None,
+            });
+        self.decisions[id.index()] = decision;
+        let arity = operation.arity();
+        // Differences of doubles have the signs that those of real numbers have.
+        let exact = |operand: NodeId| match program.node(operand) {
+            Node::Constant(constant) if constant.is_exact() => Some(constant.value()),
+            _ => None,
+        };
+        let asked: &[(usize, Demand)] = match (decision, operation, demand) {
+            (Some(Decision::Operand(number)), ..) => &[(number, demand)],
+            (Some(Decision::Negated), ..) | (None, O::Negate, _) => &[(0, demand.negated())],
+            (Some(Decision::Constant(_)), ..) => &[],
+            (None, O::Minimum | O::Maximum, _) => &[(0, demand), (1, demand)],
+            (None, O::Subtract, Demand::Side(0.0)) if let Some(of) = exact(operands[1]) => {
+                &[(0, Demand::Side(of)), (1, Demand::Value)]
+            }
+            (None, O::Add, Demand::Side(0.0)) if let Some(of) = exact(operands[1]) => {
+                &[(0, Demand::Side(-of)), (1, Demand::Value)]
+            }
+            (None, ..) => &[(0, Demand::Value), (1, Demand::Value), (2, Demand::Value)][..arity],
+        };
+        for (number, demand) in asked {
+            let asked = &mut self.demands[operands[*number].index()];
+            *asked = asked.and(*demand);
+        }
+    }
+}
+
 /// What `operation` comes to where its operands and its result are enclosed like this.
 ///
 /// Doubles lie in the enclosures as real numbers do, as the operations before are correctly rounded. What is left out must be
@@ -165,7 +221,6 @@ impl Node {
 fn decision(operation: Operation, operands: [Decorated; 3], result: Decorated) -> Option<Decision> {
     use Operation as O;
     let [a, b, _] = operands;
-    let is_common = |enclosure: Decorated| enclosure.decoration == Decoration::Common;
     let lesser = |a: Decorated, b: Decorated| a.interval.hi < b.interval.lo;
     match operation {
         O::Minimum if lesser(a, b) && is_common(b) => Some(Decision::Operand(0)),
@@ -191,25 +246,27 @@ fn decision(operation: Operation, operands: [Decorated; 3], result: Decorated) -
     }
 }
 
-impl Kept {
-    /// What `operation` comes to besides.
-    fn decision(
-        self,
-        operation: Operation,
-        [a, b, _]: [Decorated; 3],
-        result: Decorated,
-    ) -> Option<Decision> {
-        let is_zero = |enclosure: Decorated| {
-            enclosure.decoration == Decoration::Common && enclosure.interval == Interval::point(0.0)
-        };
-        match operation {
-            _ if self == Self::Doubles => None,
-            Operation::Add if is_zero(a) => Some(Decision::Operand(1)),
-            Operation::Add | Operation::Subtract if is_zero(b) => Some(Decision::Operand(0)),
-            _ if is_zero(result) => Some(Decision::Constant(0.0)),
-            _ => None,
-        }
+/// What `operation` comes to where it only matters on which side of a number the result lies: that of a minimum is the other
+/// operand's where one is greater all over the box, and that of the one that is less all over it.
+fn decision_by_side(operation: Operation, [a, b, _]: [Decorated; 3], of: f64) -> Option<Decision> {
+    let is_above = |operand: Decorated| operand.interval.lo > of;
+    let is_below = |operand: Decorated| operand.interval.hi < of;
+    let (is_left_out, decides): (&dyn Fn(Decorated) -> bool, &dyn Fn(Decorated) -> bool) = match operation {
+        Operation::Minimum => (&is_above, &is_below),
+        Operation::Maximum => (&is_below, &is_above),
+        _ => return None,
+    };
+    if is_common(b) && (is_left_out(b) || decides(a)) {
+        Some(Decision::Operand(0))
+    } else if is_common(a) && (is_left_out(a) || decides(b)) {
+        Some(Decision::Operand(1))
+    } else {
+        None
     }
+}
+
+fn is_common(enclosure: Decorated) -> bool {
+    enclosure.decoration == Decoration::Common
 }
 
 #[cfg(test)]

@@ -26,6 +26,9 @@ const MUCH_LESS: u64 = 4;
 /// operations is drawn in three quarters of the time with it; one of 997, which comes to too many formulas, takes twice as long.
 const SMALL: u64 = 800;
 
+/// How many operations the programs of all places may have together.
+const ROOM: u64 = 1 << 23;
+
 /// After so many operations by kernels made for few runs, for each of its own operations, a formula would better have been compiled at
 /// once: that takes about a quarter of a millisecond for each, and saves one or two nanoseconds whenever it is asked for.
 const OFTEN: u64 = 1 << 17;
@@ -39,14 +42,15 @@ pub(super) fn bounds_between(lo: DVec3, hi: DVec3) -> Bounds {
 }
 
 /// F at points and over boxes, F with its gradient over boxes, and [what rounding does to F](Program::with_rounding) there:
-/// everywhere, or on a box where F comes to something [shorter](Program::shortened).
+/// everywhere, or those of a [shorter](Program::shortened) function that has its signs on a box. What is concluded from several values is
+/// to be concluded from those of one function, for only their signs are the same.
 pub(super) struct Kernels {
     formula: Arc<Formula>,
     /// Where they hold.
     domain: Bounds,
 }
 
-/// F, or what it comes to in some places.
+/// F, or what it comes to in some places: a function with the same signs there.
 pub(super) struct Formula {
     /// Compiled before, or not to be compiled as long as it is seldom asked for.
     surface: Arc<Surface>,
@@ -67,25 +71,46 @@ pub(super) struct Formula {
     faces: OnceLock<Option<(Extreme, Vec<Arc<Formula>>)>>,
 }
 
-/// Formulas that are shared wherever F comes to them.
-#[derive(Default)]
+/// What F comes to in some places, shared wherever it is the same.
 pub(super) struct Formulas {
+    /// Whether what is asked for often is compiled.
+    are_compiled: bool,
     /// By the hashes of their programs.
     known: Mutex<FxHashMap<u64, Vec<Arc<Formula>>>>,
+    /// How many operations may still be kept.
+    room: AtomicU64,
 }
 
 impl Formulas {
-    /// The one with this program, made if need be.
-    fn one_of(&self, program: Program, make: impl FnOnce(Program) -> Formula) -> Arc<Formula> {
+    /// Those of some kernels: none so far.
+    pub(super) fn of(whole: &Kernels) -> Self {
+        let are_compiled = whole.operations(Kernel::Values) <= SMALL;
+        Self { are_compiled, known: Mutex::default(), room: AtomicU64::new(ROOM) }
+    }
+
+    /// The one with this program, which is what is left of `outer`. It is kept while there is room.
+    fn one_of(&self, program: Program, outer: &Formula) -> Arc<Formula> {
+        let hash = FxBuildHasher.hash_one(&program);
         // Formulas are only ever put in whole.
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        let alike = known.entry(FxBuildHasher.hash_one(&program)).or_default();
+        let alike = known.entry(hash).or_default();
         if let Some(formula) = alike.iter().find(|formula| *formula.surface.program() == program) {
             return Arc::clone(formula);
         }
-        let formula = Arc::new(make(program));
-        alike.push(Arc::clone(&formula));
+        let operations = program.operations() as u64;
+        let patience = if self.are_compiled { Patience::limited(&program) } else { Patience::endless() };
+        let surface = outer.surface.reduced_to(program);
+        let formula = Arc::new(Formula::new(surface, patience, outer.may_have_forms));
+        if self.have_room() {
+            self.room.update(Ordering::Relaxed, Ordering::Relaxed, |room| room.saturating_sub(operations));
+            alike.push(Arc::clone(&formula));
+        }
         formula
+    }
+
+    /// Whether more may be kept.
+    pub(super) fn have_room(&self) -> bool {
+        self.room.load(Ordering::Relaxed) > 0
     }
 }
 
@@ -194,45 +219,22 @@ impl Kernels {
     }
 
     /// Shorter ones that hold on `domain`, a part of where these do; `None` where there are none. They are made for few
-    /// runs, for compiling takes longer than they run.
-    pub(super) fn shortened(&self, domain: Bounds) -> Option<Self> {
-        let surface = self.formula.surface.shortened(domain)?;
-        let formula = Formula::new(surface, Patience::endless(), self.formula.may_have_forms);
-        Some(Self { formula: Arc::new(formula), domain })
-    }
-
-    /// The same for what a small formula comes to: in many places it is one of `formulas`, or becomes one, and is compiled when it
-    /// is asked for often.
-    pub(super) fn shortened_to_one_of(&self, formulas: &Formulas, domain: Bounds) -> Option<Self> {
+    /// runs, and compiled when `formulas` are and they are asked for often.
+    pub(super) fn shortened(&self, formulas: &Formulas, domain: Bounds) -> Option<Self> {
         let program = self.program().shortened(domain)?;
-        Some(Self { formula: self.one_of(formulas, program), domain })
+        Some(Self { formula: formulas.one_of(program, &self.formula), domain })
     }
 
-    /// Kernels of those of which F is the least or the greatest wherever these hold, if it is a minimum or a maximum there. Some
-    /// `formulas` are shared, and compiled when they are asked for often.
-    pub(super) fn faces(&self, formulas: Option<&Formulas>) -> Option<(Extreme, Vec<Self>)> {
-        let face = |program| match formulas {
-            Some(formulas) => self.one_of(formulas, program),
-            None => {
-                let surface = self.formula.surface.reduced_to(program);
-                Arc::new(Formula::new(surface, Patience::endless(), self.formula.may_have_forms))
-            }
-        };
+    /// Kernels of those of which F is the least or the greatest wherever these hold, if it is a minimum or a maximum there.
+    pub(super) fn faces(&self, formulas: &Formulas) -> Option<(Extreme, Vec<Self>)> {
         let faces = self.formula.faces.get_or_init(|| {
             let (extreme, programs) = self.program().extreme_of()?;
-            Some((extreme, programs.into_iter().map(face).collect()))
+            let faces = programs.into_iter().map(|program| formulas.one_of(program, &self.formula));
+            Some((extreme, faces.collect()))
         });
         let (extreme, faces) = faces.as_ref()?;
         let kernels = |face: &Arc<Formula>| Self { formula: Arc::clone(face), domain: self.domain };
         Some((*extreme, faces.iter().map(kernels).collect()))
-    }
-
-    /// The one of `formulas` with this program.
-    fn one_of(&self, formulas: &Formulas, program: Program) -> Arc<Formula> {
-        formulas.one_of(program, |program| {
-            let patience = Patience::limited(&program);
-            Formula::new(self.formula.surface.reduced_to(program), patience, self.formula.may_have_forms)
-        })
     }
 
     /// Whether there is anything that a box may decide.

@@ -11,6 +11,8 @@ pub(super) struct Line<'a> {
     pub(super) kernels: &'a Kernels,
     /// Kernels that hold on a part of the ray.
     pub(super) local: &'a Kernels,
+    /// Those of the two that are asked: all that is concluded from several enclosures is concluded of one function.
+    pub(super) asked: &'a Kernels,
     pub(super) scratch: &'a mut Scratch,
     pub(super) ray: Ray,
     /// How many boxes were enclosed along this ray.
@@ -28,9 +30,9 @@ pub(super) struct Course {
 }
 
 impl<'a> Line<'a> {
-    /// The shortest kernels that hold on all of the boxes.
-    pub(super) fn kernels_on(&self, boxes: &[Bounds]) -> &'a Kernels {
-        if boxes.iter().all(|bounds| self.local.cover(bounds)) { self.local } else { self.kernels }
+    /// From now on asks the shortest kernels that hold on a stretch, on which all is to lie until this is called again.
+    pub(super) fn enter(&mut self, stretch: Span) {
+        self.asked = if self.local.cover(&self.bounds(stretch)) { self.local } else { self.kernels };
     }
 
     /// Encloses F over each of the stretches; what stands behind their number means nothing.
@@ -38,9 +40,8 @@ impl<'a> Line<'a> {
         self.evaluations += stretches.len() as u64;
         let boxes = self.boxes(stretches);
         let boxes = &boxes[..stretches.len()];
-        let kernels = self.kernels_on(boxes);
-        self.operations += kernels.charge(Kernel::ValueEnclosures, boxes.len());
-        kernels.enclosures(self.scratch, boxes)
+        self.operations += self.asked.charge(Kernel::ValueEnclosures, boxes.len());
+        self.asked.enclosures(self.scratch, boxes)
     }
 
     /// Encloses F at `t`.
@@ -68,9 +69,8 @@ impl<'a> Line<'a> {
     }
 
     fn jets(&mut self, boxes: &[Bounds]) -> [Jet; BATCH] {
-        let kernels = self.kernels_on(boxes);
-        self.operations += kernels.charge(Kernel::GradientEnclosures, boxes.len());
-        kernels.jets(self.scratch, boxes)
+        self.operations += self.asked.charge(Kernel::GradientEnclosures, boxes.len());
+        self.asked.jets(self.scratch, boxes)
     }
 
     /// The box around a stretch of the ray.

@@ -120,7 +120,15 @@ impl Certified {
     ) -> Outcome {
         let Workspace { scratch, counters, ahead, entries, expansion, .. } = workspace;
         let mut search = Search {
-            line: Line { kernels: &self.kernels, local, scratch, ray, evaluations: 0, operations: 0 },
+            line: Line {
+                kernels: &self.kernels,
+                local,
+                asked: &self.kernels,
+                scratch,
+                ray,
+                evaluations: 0,
+                operations: 0,
+            },
             accuracy: self.accuracy,
             stop: &self.stop,
             clip,

@@ -1,6 +1,5 @@
 //! Kernels by place: where a box decides branches of F, what is left of F is kept for all rays that come by.
 
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, RwLock};
 
 use glam::DVec3;
@@ -8,16 +7,13 @@ use iso_expr::{Extreme, Interval};
 use rustc_hash::FxHashMap;
 
 use super::kernels::{Bounds, Formulas, Kernels, bounds_between};
-use crate::{Kernel, Region};
+use crate::Region;
 
 /// How often the region is halved along each axis at most.
 const DEEPEST: u32 = 6;
 
 /// A place holds what lies in it however that is rounded: it is larger at each side by this part of its size.
 const MARGIN: f64 = 1.0 / (1u64 << 32) as f64;
-
-/// How many operations the programs of all places may have together.
-const ROOM: u64 = 1 << 23;
 
 /// What F comes to in parts of the region, found out when it is first asked for.
 ///
@@ -31,10 +27,7 @@ pub(super) struct Places {
     /// Whether all is done with the whole formula.
     are_ignored: bool,
     known: RwLock<FxHashMap<Place, Arc<Kernels>>>,
-    /// What a small formula comes to in some of them.
     formulas: Formulas,
-    /// How many operations may still be kept.
-    room: AtomicU64,
 }
 
 /// One of a level's overlapping boxes.
@@ -64,8 +57,7 @@ impl Places {
             extent: region.max() - region.min(),
             are_ignored: false,
             known: RwLock::default(),
-            formulas: Formulas::default(),
-            room: AtomicU64::new(ROOM),
+            formulas: Formulas::of(whole),
         }
     }
 
@@ -96,8 +88,7 @@ impl Places {
 
     /// Kernels of those of which F is the least or the greatest wherever some kernels hold, if it is a minimum or a maximum there.
     pub(super) fn faces(&self, kernels: &Kernels) -> Option<(Extreme, Vec<Arc<Kernels>>)> {
-        let formulas = self.whole.are_small().then_some(&self.formulas);
-        let (extreme, faces) = kernels.faces(formulas)?;
+        let (extreme, faces) = kernels.faces(&self.formulas)?;
         Some((extreme, faces.into_iter().map(Arc::new).collect()))
     }
 
@@ -132,17 +123,11 @@ impl Places {
 
     /// What F comes to at a place in one where it comes to `outer`.
     fn find_out(&self, place: Place, outer: Arc<Kernels>) -> Arc<Kernels> {
-        let found = match self.bounds(place) {
-            _ if !outer.may_be_shortened() => None,
-            bounds if self.whole.are_small() => outer.shortened_to_one_of(&self.formulas, bounds),
-            bounds => outer.shortened(bounds),
-        };
-        let operations = 1 + found.as_ref().map_or(0, |found| found.operations(Kernel::Values));
-        let found = found.map_or(outer, Arc::new);
-        let room =
-            self.room.try_update(Ordering::Relaxed, Ordering::Relaxed, |room| room.checked_sub(operations));
+        let shortened =
+            if outer.may_be_shortened() { outer.shortened(&self.formulas, self.bounds(place)) } else { None };
+        let found = shortened.map_or(outer, Arc::new);
         // Without room it is found out anew each time: no result depends on what is kept.
-        if room.is_ok() {
+        if self.formulas.have_room() {
             let mut known = self.known.write().expect("no thread panics while it holds the map");
             known.insert(place, Arc::clone(&found));
         }

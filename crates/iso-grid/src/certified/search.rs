@@ -136,6 +136,7 @@ impl Search<'_> {
     /// ahead.
     fn examine(&mut self, ends: &[f64]) {
         let count = ends.len() - 1;
+        self.line.enter(Span { start: ends[0], end: ends[count] });
         let parts: [Span; PARTS] = std::array::from_fn(|part| {
             let part = part.min(count - 1);
             Span { start: ends[part], end: ends[part + 1] }
@@ -165,6 +166,7 @@ impl Search<'_> {
 
     /// Ends the search at a stretch that cannot be split further, or finds that it holds no root after all.
     fn settle(&mut self, stretch: Span) -> Option<Outcome> {
+        self.line.enter(stretch);
         let value = self.line.course(stretch).value;
         if value.decoration < Decoration::Continuous {
             return (!self.pieces_are_free(stretch)).then_some(Outcome::Undecided(stretch));
@@ -174,6 +176,7 @@ impl Search<'_> {
         for _ in 0..WIDENINGS {
             let wide =
                 Span { start: round_down(stretch.start - margin), end: round_up(stretch.end + margin) };
+            self.line.enter(wide);
             let course = self.line.course(wide);
             let [before, after, ..] =
                 self.line.courses(&[wide.start, wide.end].map(|t| Span { start: t, end: t }));
@@ -202,6 +205,7 @@ impl Search<'_> {
 
     /// Ends the search at the one simple root of a stretch, unless it lies outside the region.
     fn place(&mut self, stretch: Span) -> Option<Outcome> {
+        self.line.enter(stretch);
         let bracket = self.line.enclose_root(stretch, self.tolerance(stretch));
         let Clip { outer, inner } = self.clip;
         if bracket.end < outer.start || bracket.start > outer.end {
@@ -218,7 +222,7 @@ impl Search<'_> {
     /// Whether F is never zero on a stretch, seen piece by piece.
     fn pieces_are_free(&mut self, stretch: Span) -> bool {
         let bounds = self.line.bounds(stretch);
-        for (place, piece) in self.line.kernels_on(&[bounds]).program().pieces(bounds).enumerate() {
+        for (place, piece) in self.line.asked.program().pieces(bounds).enumerate() {
             self.line.evaluations += 1;
             if place == PIECES || !free_of_zero(piece) {
                 return false;

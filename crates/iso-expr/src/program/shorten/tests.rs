@@ -35,15 +35,42 @@ fn branches_that_are_never_taken_are_left_out() {
 }
 
 #[test]
+fn branches_that_do_not_matter_to_the_sign_are_left_out() {
+    let cases = [
+        ("min(x - 0.5, y)", 1),
+        ("max(x - 0.5, -y)", 1),
+        ("-min(x - 0.5, y + z)", 2),
+        ("max(-min(x - 0.5, y * z), z - 2)", 2),
+        // The lesser of two that are positive.
+        ("min(x, y)", 0),
+        // F is negative, whatever z - 0.5 is.
+        ("min(z - 0.5, x - 3)", 1),
+        ("min(x, y + 0.5) = 0.6", 1),
+        ("max(x, y - 0.5) + -0.6", 1),
+        // It may be undefined, which is for the other to say.
+        ("min(x, 9 + sqrt(y - 0.5))", 3),
+    ];
+    for (formula, operations) in cases {
+        let left = operations_left(formula, 0.25, 1.0);
+        assert!(left.is_some_and(|left| left <= operations), "{formula}: {left:?}");
+    }
+}
+
+#[test]
 fn what_is_open_or_may_be_undefined_stays() {
     let cases = [
         // Both branches are taken.
-        "min(x, y)",
+        "min(x - 0.5, y - 0.5)",
         "abs(x - 0.5)",
         "if(x < 0.5, y, exp(z))",
+        // Its value matters, here and beside its sign.
+        "exp(min(x - 0.5, y - 0.25))",
+        "max(min(x - 0.5, y - 0.25), exp(min(x - 0.5, y - 0.25)) - 1)",
+        // The differences of two signs are not those of the numbers.
+        "min(x, y) - z",
         // The branch not taken is undefined on a part of the box, and with it the minimum.
-        "min(x, 9 + sqrt(y - 0.5))",
-        "min(x, 9 + 1/(y - 0.5)^2)",
+        "min(x - 0.5, 9 + sqrt(y - 0.5))",
+        "min(x - 0.5, 9 + 1/(y - 0.5)^2)",
         // It overflows on its way.
         "max(x, -1 - 1/exp(exp(exp(7 + x))))",
         // The condition may be undefined.
@@ -56,18 +83,11 @@ fn what_is_open_or_may_be_undefined_stays() {
     }
 }
 
+/// What random programs come to on random boxes has their signs there, in doubles, and is undefined where they are.
 #[test]
-fn what_is_zero_is_left_out_over_boxes() {
-    let program = program("if(x < 5, 0, exp(z)) * exp(y) + y");
-    let short = program.shortened_over_boxes(cube(0.25, 1.0)).unwrap();
-    assert_eq!(short.operations(), 0, "{short}");
-}
-
-/// Random programs on random boxes compute the same doubles as what they come to there, and enclosures of that are no wider.
-#[test]
-fn shortened_programs_compute_the_same() {
+fn shortened_programs_have_the_same_signs() {
     let mut random = Random::new(5);
-    let mut shortened = 0;
+    let (mut shortened, mut differ) = (0, 0);
     for _ in 0..40_000 {
         let program = random.program(1 + shortened % 24).simplified();
         let domain = [(); 3].map(|()| {
@@ -78,15 +98,15 @@ fn shortened_programs_compute_the_same() {
         shortened += 1;
         for _ in 0..16 {
             let point = domain.map(|side| random.inside(side));
-            let (expected, found) = (program.evaluate(point), short.evaluate(point));
-            for (expected, found) in expected.iter().zip(&found) {
-                let is_same = expected.to_bits() == found.to_bits() || expected.is_nan() && found.is_nan();
-                assert!(
-                    is_same,
-                    "{found:?} instead of {expected:?} at {point:?} in {domain:?}\n{program}\n{short}"
-                );
-            }
+            let [expected, found] = [&program, &short].map(|program| program.evaluate(point)[0]);
+            let is_same = expected.partial_cmp(&0.0) == found.partial_cmp(&0.0);
+            assert!(
+                is_same,
+                "{found:?} instead of {expected:?} at {point:?} in {domain:?}\n{program}\n{short}"
+            );
+            differ += u32::from(expected != found);
         }
     }
     assert!(shortened > 1000, "only {shortened} were shortened");
+    assert!(differ > 100, "only {differ} values were let go");
 }

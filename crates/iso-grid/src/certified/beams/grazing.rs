@@ -64,17 +64,16 @@ impl Subdivision<'_> {
             return false;
         }
         let found = self.bend(part).and_then(|bend| {
-            let kernels = self.kernels_for(part);
-            let error = self.error_of_values(part, kernels)?;
-            Some((bend, kernels, Arc::new(&bend, part.form.slope, error, self.tolerance(part))?))
+            let error = self.error_of_values(part, part.kernels)?;
+            Some((bend, Arc::new(&bend, part.form.slope, error, self.tolerance(part))?))
         });
         self.memory.attempts.note(size, found.is_some());
-        let Some((bend, kernels, arc)) = found else { return false };
+        let Some((bend, arc)) = found else { return false };
         let bend = if arc.sign < 0.0 { bend.negated() } else { bend };
         let mut pixels = std::mem::take(&mut self.memory.bowed);
         let count = self.start_bent(part, &bend, &arc, &mut pixels);
         if let Some(count) = count {
-            self.pursue_and_settle(&mut pixels[..count], kernels, &arc);
+            self.pursue_and_settle(&mut pixels[..count], part.kernels, &arc);
         }
         self.memory.bowed = pixels;
         count.is_some()

@@ -93,27 +93,21 @@ impl Subdivision<'_> {
 
     /// Ends or goes on with each ray of a part by its root there.
     fn follow_each(&mut self, part: &Part, model: &Model) {
-        let kernels = self.kernels_for(part);
-        let Some(sight) = self.sight(part, kernels) else { return self.search_each(part) };
+        let Some(sight) = self.sight(part) else { return self.search_each(part) };
         let mut bundles = std::mem::take(&mut self.memory.bundles);
         let count = self.bundle(part, model, &mut bundles);
         for bundles in bundles[..count].chunks_mut(AT_ONCE) {
-            self.pursue_bundles(bundles, (part, model), kernels, &sight);
+            self.pursue_bundles(bundles, (part, model), &sight);
             for (place, end) in bundles.iter().flat_map(Bundle::ends) {
-                self.settle(Ended { place, end }, kernels);
+                self.settle(Ended { place, end }, part.kernels);
             }
         }
         self.memory.bundles = bundles;
     }
 
     /// Follows the rays of no more than [`AT_ONCE`] bundles.
-    fn pursue_bundles(
-        &mut self,
-        bundles: &mut [Bundle],
-        (part, model): (&Part, &Model),
-        kernels: u32,
-        sight: &Sight,
-    ) {
+    fn pursue_bundles(&mut self, bundles: &mut [Bundle], (part, model): (&Part, &Model), sight: &Sight) {
+        let kernels = part.kernels;
         let Area { column, row, .. } = self.beam(part.beam).area;
         let [across, along] = self.beam(part.beam).radii;
         let Workspace { arch, points, scratch, counters, .. } = &mut *self.workspace;
@@ -142,12 +136,12 @@ impl Subdivision<'_> {
         counters.operations += of_part.charge(kernel_of_last, taken.last);
     }
 
-    /// What values by kernels of this number say over a part. `None` when rounding is not bounded there.
-    fn sight(&mut self, part: &Part, kernels: u32) -> Option<Sight> {
+    /// What values say over a part. `None` when rounding is not bounded there.
+    fn sight(&mut self, part: &Part) -> Option<Sight> {
         let form = &part.form;
         let tolerance = self.tolerance(part);
         let bounds = self.beam(part.beam).bounds(form.reach, &self.certified.region)?;
-        let known = self.rounding_around(kernels, bounds);
+        let known = self.rounding_around(part.kernels, bounds);
         let sight =
             |rounding: &Rounding, beam: &Beam| Sight::new(form, tolerance, rounding.error(beam, form.reach));
         let rough = known.and_then(|known| sight(&known, self.beam(part.beam)));
@@ -155,7 +149,7 @@ impl Subdivision<'_> {
         if rough.as_ref().is_some_and(|sight| SHARP * sight.blur < tolerance) {
             return rough;
         }
-        let exact = self.rounding(kernels, bounds)?;
+        let exact = self.rounding(part.kernels, bounds)?;
         sight(&exact, self.beam(part.beam))
     }
 

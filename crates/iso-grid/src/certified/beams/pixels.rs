@@ -2,15 +2,11 @@
 //! [side by side](super::bundle).
 
 use super::arcs::{Arc, Bowed};
-use super::rounding::outwards;
-use super::subdivision::{Part, Subdivision};
+use super::subdivision::Subdivision;
 use crate::{Hit, Kernel, Outcome, Ray, Span, Workspace};
 
 /// How many values of F a ray is given at most before it is searched for its own.
 pub(super) const STEPS: usize = 10;
-
-/// Shorter kernels are made for a part when it has so many rays.
-const MANY: usize = 64;
 
 /// A ray that may have a root in a part, and what is known of F along it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -93,21 +89,6 @@ impl Subdivision<'_> {
                 self.search_one(self.position(place), wanted, kernels);
             }
         }
-    }
-
-    /// The number of the kernels for the rays of a part: shorter ones made for this part alone, where so many rays may gain.
-    pub(super) fn kernels_for(&mut self, part: &Part) -> u32 {
-        let beam = self.beam(part.beam);
-        let kernels = self.kernels(part.kernels);
-        let may_gain = kernels.may_be_shortened() && !kernels.are_small();
-        if !may_gain || beam.area.width * beam.area.height < MANY {
-            return part.kernels;
-        }
-        let bounds = beam.bounds(part.form.reach, &self.certified.region).map(|(lo, hi)| outwards(lo, hi));
-        let Some(shortened) = bounds.and_then(|bounds| kernels.shortened(bounds)) else {
-            return part.kernels;
-        };
-        self.number_of(std::sync::Arc::new(shortened))
     }
 
     /// Takes F at each pixel's t, and counts the pixels that are nearer to their roots by that, which are then in front. The last
