@@ -16,15 +16,8 @@ use crate::{Kernel, Surface};
 /// How many boxes are enclosed by one call at most.
 pub(super) const BATCH: usize = 8;
 
-/// About how much longer an operation takes in kernels that are made for few runs.
-const INTERPRETING: u64 = 2;
-
-/// The same at points, where it is interpreted.
+/// About how much longer an operation takes at points in kernels that are made for few runs, where it is interpreted.
 const MUCH_LESS: u64 = 4;
-
-/// What formulas of no more operations come to in some places is compiled, if it is asked for often enough. Measured: a model of 676
-/// operations is drawn in three quarters of the time with it; one of 997, which comes to too many formulas, takes twice as long.
-const SMALL: u64 = 800;
 
 /// How many operations the programs of all places may have together.
 const ROOM: u64 = 1 << 23;
@@ -73,21 +66,20 @@ pub(super) struct Formula {
 
 /// What F comes to in some places, shared wherever it is the same.
 pub(super) struct Formulas {
-    /// Whether what is asked for often is compiled.
-    are_compiled: bool,
     /// By the hashes of their programs.
     known: Mutex<FxHashMap<u64, Vec<Arc<Formula>>>>,
     /// How many operations may still be kept.
     room: AtomicU64,
 }
 
-impl Formulas {
-    /// Those of some kernels: none so far.
-    pub(super) fn of(whole: &Kernels) -> Self {
-        let are_compiled = whole.operations(Kernel::Values) <= SMALL;
-        Self { are_compiled, known: Mutex::default(), room: AtomicU64::new(ROOM) }
+/// None so far.
+impl Default for Formulas {
+    fn default() -> Self {
+        Self { known: Mutex::default(), room: AtomicU64::new(ROOM) }
     }
+}
 
+impl Formulas {
     /// The one with this program, which is what is left of `outer`. It is kept while there is room.
     fn one_of(&self, program: Program, outer: &Formula) -> Arc<Formula> {
         let hash = FxBuildHasher.hash_one(&program);
@@ -98,7 +90,7 @@ impl Formulas {
             return Arc::clone(formula);
         }
         let operations = program.operations() as u64;
-        let patience = if self.are_compiled { Patience::limited(&program) } else { Patience::endless() };
+        let patience = Patience::limited(&program);
         let surface = outer.surface.reduced_to(program);
         let formula = Arc::new(Formula::new(surface, patience, outer.may_have_forms));
         if self.have_room() {
@@ -219,7 +211,7 @@ impl Kernels {
     }
 
     /// Shorter ones that hold on `domain`, a part of where these do; `None` where there are none. They are made for few
-    /// runs, and compiled when `formulas` are and they are asked for often.
+    /// runs, and compiled when they are asked for often.
     pub(super) fn shortened(&self, formulas: &Formulas, domain: Bounds) -> Option<Self> {
         let program = self.program().shortened(domain)?;
         Some(Self { formula: formulas.one_of(program, &self.formula), domain })
@@ -240,17 +232,6 @@ impl Kernels {
     /// Whether there is anything that a box may decide.
     pub(super) fn may_be_shortened(&self) -> bool {
         self.formula.has_branches
-    }
-
-    /// Whether the formula is so small that what it comes to in some places may be compiled.
-    pub(super) fn are_small(&self) -> bool {
-        self.operations(Kernel::Values) <= SMALL
-    }
-
-    /// Whether these, which are made for few runs, take less time than `others` as native code. Where `others` are not compiled the
-    /// answer is the same, so that both engines prove the same enclosures.
-    pub(super) fn are_quicker_than(&self, others: &Self) -> bool {
-        INTERPRETING * self.operations(Kernel::Values) <= others.operations(Kernel::Values)
     }
 
     /// How many operations a kernel takes.

@@ -57,7 +57,7 @@ impl Places {
             extent: region.max() - region.min(),
             are_ignored: false,
             known: RwLock::default(),
-            formulas: Formulas::of(whole),
+            formulas: Formulas::default(),
         }
     }
 
@@ -71,19 +71,13 @@ impl Places {
         self.whole.may_be_shortened() && !self.are_ignored
     }
 
-    /// Kernels that hold on a box in the region: the shortest known, or those that hold everywhere where they are quicker.
+    /// Kernels that hold on a box in the region: the shortest known.
     pub(super) fn kernels(&self, lo: DVec3, hi: DVec3) -> Arc<Kernels> {
         if !self.are_asked() {
             return Arc::clone(&self.whole);
         }
         let found = self.at(self.around(lo, hi));
-        if found.cover(&bounds_between(lo, hi))
-            && (self.whole.are_small() || found.are_quicker_than(&self.whole))
-        {
-            found
-        } else {
-            Arc::clone(&self.whole)
-        }
+        if found.cover(&bounds_between(lo, hi)) { found } else { Arc::clone(&self.whole) }
     }
 
     /// Kernels of those of which F is the least or the greatest wherever some kernels hold, if it is a minimum or a maximum there.
