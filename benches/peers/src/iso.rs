@@ -150,7 +150,8 @@ impl Renderer for Iso {
         let size = self.view.size()?;
         let mut picture = self.picture.take().unwrap_or_else(|| Picture::empty(size));
         let start = Instant::now();
-        if std::env::var_os("COLD").is_some() { self.tracer = self.method.prepare(&self.surface, self.view.region()?)?; }
+        // What was found out for the picture before is forgotten: other programs find everything out anew.
+        self.tracer = self.method.prepare(&self.surface, self.view.region()?)?;
         self.draw_over(&mut picture, Layers { depth: true, normals: true, ..Layers::default() })?;
         let seconds = start.elapsed().as_secs_f64();
         self.picture = Some(picture);

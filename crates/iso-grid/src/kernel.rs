@@ -5,6 +5,9 @@ use iso_expr::Program;
 /// Formulas of more operations are not differentiated twice.
 const DIFFERENTIATED_TWICE: usize = 100;
 
+/// Formulas of more operations that have branches are hardly ever asked for as a whole, but for what is left of them in places.
+const AS_A_WHOLE: usize = 100;
+
 /// One of a surface's kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
@@ -53,6 +56,11 @@ impl Kernel {
             Self::Forms | Self::ParallelForms => value.operations() <= Self::WITH_FORMS && value.has_forms(),
             _ => true,
         }
+    }
+
+    /// Whether the method that proves what it says compiles no kernel of a formula ahead, for less of it is left nearly everywhere.
+    pub fn are_left_to_places(value: &Program) -> bool {
+        value.operations() > AS_A_WHOLE && value.has_branches()
     }
 
     /// Whether it runs over boxes, and not over points or forms.

@@ -15,9 +15,7 @@ use crate::{Hit, Outcome, Span, Surface, Tile, Tracer, Workspace};
 const ROWS: usize = 32;
 
 /// Blocks of so many columns and rows may be answered by a shorter formula.
-const BLOCK: usize = 16;
-/// They are when so many normals are asked for there.
-const MANY: usize = 64;
+const BLOCK: usize = 8;
 
 /// The distances in front of a point at which its normal is looked for when it has none itself, as parts of the distance
 /// that the ray has come: 2⁻⁴⁰, and from there on in powers of 8 up to 2⁻¹⁰.
@@ -108,9 +106,9 @@ pub(crate) struct Asked {
     t: f64,
 }
 
-/// The shorter formula that the tracer knows around some points of a block, if there are many.
+/// The shorter formula that the tracer knows around some points of a block.
 fn kernel_on(tracer: &dyn Tracer, tile: Tile<'_>, asked: &[Asked]) -> Option<Arc<dyn BatchKernel>> {
-    if asked.len() < MANY {
+    if asked.is_empty() {
         return None;
     }
     let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);

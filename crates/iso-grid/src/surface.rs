@@ -95,6 +95,11 @@ impl Surface {
         Self { many, ..Self::new(self.engine.for_few_runs(), value).stopped_by(self.stop.clone()) }
     }
 
+    /// The same surface with kernels that are made for few runs.
+    pub(crate) fn made_for_few_runs(&self) -> Self {
+        Self { programs: Arc::clone(&self.programs), ..self.reduced_to(self.value.clone()) }
+    }
+
     /// The same surface with kernels that are made for many runs.
     pub(crate) fn compiled_for_many_runs(&self) -> Self {
         let engine = self.many.as_ref().unwrap_or(&self.engine);

@@ -32,6 +32,8 @@ pub struct Plan {
     arguments: [Decision<Axis>; 3],
     constants: [Decision<Given>; 4],
     kernels: [Decision<Kernel>; Kernel::ALL.len()],
+    /// Whether none of them is compiled ahead.
+    is_left_to_places: bool,
     passes: [Decision<Pass>; 6],
     buffers: [Decision<Buffer>; 6],
 }
@@ -144,6 +146,7 @@ impl Plan {
             constants: [Given::Level, Given::Parameters, Given::Direction, Given::Position]
                 .map(|given| decide(given, wanted.constant(given))),
             kernels: Kernel::ALL.map(|kernel| decide(kernel, wanted.kernel(kernel))),
+            is_left_to_places: wanted.is_left_to_places(),
             passes: [Pass::Fit, Pass::Classify, Pass::Trace, Pass::Normals, Pass::Shade, Pass::Smooth]
                 .map(|pass| decide(pass, wanted.pass(pass))),
             buffers: [
@@ -208,7 +211,7 @@ impl Plan {
     pub fn compiled_ahead(&self) -> impl Iterator<Item = Kernel> {
         let taken = self.kernels.iter().filter(|kernel| kernel.taken).map(|kernel| kernel.subject);
         let has_forms = taken.clone().any(|kernel| matches!(kernel, Kernel::Forms | Kernel::ParallelForms));
-        taken.filter(move |kernel| kernel.is_compiled_ahead(has_forms))
+        taken.filter(move |kernel| !self.is_left_to_places && kernel.is_compiled_ahead(has_forms))
     }
 
     /// Compiles these kernels, so that the time it takes is known.
@@ -269,8 +272,25 @@ impl Wanted<'_> {
         }
     }
 
+    fn is_certified(&self) -> bool {
+        matches!(self.method, Method::Certified { .. })
+    }
+
+    fn is_left_to_places(&self) -> bool {
+        self.is_certified() && Kernel::are_left_to_places(self.program)
+    }
+
     fn kernel(&self, kernel: Kernel) -> Verdict {
-        let certified = matches!(self.method, Method::Certified { .. });
+        match self.kernel_of_whole(kernel) {
+            (true, _) if self.is_left_to_places() => {
+                (true, "asked for where boxes leave less of F; compiled for each place when asked for often")
+            }
+            verdict => verdict,
+        }
+    }
+
+    fn kernel_of_whole(&self, kernel: Kernel) -> Verdict {
+        let certified = self.is_certified();
         match kernel {
             Kernel::Values if certified => (true, "roots are narrowed down at points before they are proven"),
             Kernel::Values => (true, "rays are sampled, and roots found between samples"),

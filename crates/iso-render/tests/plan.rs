@@ -84,6 +84,21 @@ fn the_kernels_compiled_are_the_planned_ones() {
 }
 
 #[test]
+fn nothing_is_compiled_ahead_of_large_formulas_of_which_less_is_left_in_places() {
+    let ball = |n: u32| format!("(x-{n}/15+1)^2 + (y-sin({n}))^2 + z^2 - 0.1");
+    let union = (0..30).map(ball).reduce(|union, ball| format!("min({union}, {ball})")).unwrap();
+    let program = program(&union);
+    for method in methods() {
+        for layers in [ALL, DEPTH] {
+            let plan = Plan::new(&wanted(&program, method, layers));
+            let (_, compiled) = draw(&program, &plan);
+            assert_eq!(compiled, planned(&plan), "{method:?}");
+            assert_eq!(compiled.is_empty(), matches!(method, Method::Certified { .. }), "{method:?}");
+        }
+    }
+}
+
+#[test]
 fn layers_left_out_are_not_computed_and_change_no_other() {
     let program = program(PAPER);
     for method in methods() {

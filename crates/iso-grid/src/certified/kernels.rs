@@ -198,16 +198,21 @@ pub(super) const NOTHING_KNOWN: Decorated =
     Decorated { interval: Interval::ENTIRE, decoration: Decoration::Trivial };
 
 impl Kernels {
-    /// Kernels that hold everywhere.
+    /// Kernels that hold everywhere: native code, unless they are [left to places](Kernel::are_left_to_places).
     ///
     /// # Errors
     /// When the engine cannot compile one.
     pub(super) fn of(surface: &Surface) -> Result<Self, CompileError> {
-        let has_forms = Kernel::Forms.pays(surface.program());
-        Kernel::of_proofs(has_forms).try_for_each(|kernel| surface.compile(kernel))?;
-        let may_have_forms = surface.program().operations() <= Kernel::WITH_FORMS;
-        let formula = Arc::new(Formula::new(surface.clone(), Patience::endless(), may_have_forms));
-        Ok(Self { formula, domain: [Interval::ENTIRE; 3] })
+        let program = surface.program();
+        let may_have_forms = program.operations() <= Kernel::WITH_FORMS;
+        let formula = if Kernel::are_left_to_places(program) {
+            Formula::new(surface.made_for_few_runs(), Patience::limited(program), may_have_forms)
+        } else {
+            let has_forms = Kernel::Forms.pays(program);
+            Kernel::of_proofs(has_forms).try_for_each(|kernel| surface.compile(kernel))?;
+            Formula::new(surface.clone(), Patience::endless(), may_have_forms)
+        };
+        Ok(Self { formula: Arc::new(formula), domain: [Interval::ENTIRE; 3] })
     }
 
     /// Shorter ones that hold on `domain`, a part of where these do; `None` where there are none. They are made for few
@@ -256,10 +261,12 @@ impl Kernels {
         &**compiled(self.formula.surface().over_points(kernel))
     }
 
-    /// F and its gradient at points, made for few runs, if that takes less time than those of `others` as native code.
+    /// F and its gradient at points, made for few runs, if that takes less time than those of `others` as native code, or that is not at
+    /// hand.
     pub(super) fn gradients_at_points(&self, others: &Self) -> Option<Arc<dyn BatchKernel>> {
         let [these, those] = [self, others].map(|kernels| kernels.operations(Kernel::Gradients));
-        (MUCH_LESS * these <= those).then(|| Arc::clone(compiled(self.formula.surface.gradients())))
+        let pays = MUCH_LESS * these <= those || Kernel::are_left_to_places(others.program());
+        pays.then(|| Arc::clone(compiled(self.formula.surface.gradients())))
     }
 
     /// F over boxes.

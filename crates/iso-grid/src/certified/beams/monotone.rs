@@ -112,8 +112,7 @@ impl Subdivision<'_> {
         let [across, along] = self.beam(part.beam).radii;
         let Workspace { arch, points, scratch, counters, .. } = &mut *self.workspace;
         let of_part = &self.kernels[kernels as usize];
-        // What is left of a formula in some place is compiled without its gradient.
-        let takes_gradients = self.normals.is_some() && kernels == 0;
+        let takes_gradients = self.normals.is_some();
         let kernel_of_last = if takes_gradients { Kernel::Gradients } else { Kernel::Values };
         let kernel = of_part.over_points(kernel_of_last);
         let last = match &mut self.normals {
