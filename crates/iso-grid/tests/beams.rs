@@ -245,6 +245,51 @@ fn no_tile_contradicts_its_rays_whatever_the_formula() {
     assert!(decided > 500, "{decided} rays hit");
 }
 
+/// A body put together by so many levels of unions, intersections and differences, some of them shrunk or grown.
+fn random_body(random: &mut Random, levels: u32) -> String {
+    let mut number = |lo, hi| random.between(lo, hi);
+    if levels == 0 {
+        let [a, b, c] = [(); 3].map(|()| number(-1.0, 1.0));
+        let size = number(0.1, 0.9);
+        return match random.below(4) {
+            0 => format!("(sqrt((x-{a})^2 + (y-{b})^2 + (z-{c})^2) - {size})"),
+            1 => format!("((x-{a})^2 + (z-{c})^2 - {size}^2)"),
+            2 => format!("max(abs(x-{a}), abs(y-{b}), abs(z-{c})) - {size}"),
+            _ => format!("({a} x + {b} y + {c} z - {size}/9)"),
+        };
+    }
+    let change = number(-0.2, 0.2);
+    let [a, b] = [(); 2].map(|()| random_body(random, levels - 1));
+    match random.below(5) {
+        0 => format!("max({a}, {b})"),
+        1 => format!("max({a}, -({b}))"),
+        2 => format!("(min({a}, {b}) - {change})"),
+        _ => format!("min({a}, {b})"),
+    }
+}
+
+/// Along single rays the whole formula is asked for, in tiles what is left of it.
+#[test]
+fn what_is_left_of_bodies_in_places_proves_what_they_do() {
+    let mut random = Random::new(8);
+    let (mut same, mut all) = (0, 0);
+    for number in 0..40 {
+        let body = random_body(&mut random, 2 + number % 4);
+        let tracer = certified(&read(&body), 1.7);
+        for view in views(1.7, 24, 20) {
+            let alone = alone(&tracer, &view.rays);
+            for outcomes in together(&tracer, &view) {
+                for (a, b) in outcomes.into_iter().zip(&alone) {
+                    assert!(agree(a, *b) && is_narrow(a), "{body}\n{}: {a:?}, alone {b:?}", view.name);
+                    same += u32::from(is_same(a, *b));
+                    all += 1;
+                }
+            }
+        }
+    }
+    assert!(same > all - all / 100, "{same} of {all} rays end alike");
+}
+
 /// Roundings of x hide the constant, unless x is known to cancel before it is rounded.
 #[test]
 fn tiles_know_that_a_tiny_constant_is_not_zero() {

@@ -66,6 +66,10 @@ fn what_is_open_or_may_be_undefined_stays() {
         // Its value matters, here and beside its sign.
         "exp(min(x - 0.5, y - 0.25))",
         "max(min(x - 0.5, y - 0.25), exp(min(x - 0.5, y - 0.25)) - 1)",
+        // Two sides of it matter.
+        "max(min(x - 0.3, y - 0.1), min(x - 0.3, y - 0.1) - 0.5)",
+        // It matters on which side of a number other than zero the minimum lies.
+        "-min(x - 0.9, y - 1.5) = 0.6",
         // The differences of two signs are not those of the numbers.
         "min(x, y) - z",
         // The branch not taken is undefined on a part of the box, and with it the minimum.
@@ -81,6 +85,14 @@ fn what_is_open_or_may_be_undefined_stays() {
     for formula in cases {
         assert_eq!(operations_left(formula, 0.25, 1.0), None, "{formula}");
     }
+}
+
+/// As `(m + 1/2) + 3/10 > 0` is not `m + 1/2 > 0`.
+#[test]
+fn sums_of_sums_keep_their_terms() {
+    let formula = "-(min(x - 0.6, y - 0.5) + 0.5) + 0.3";
+    let as_it_stands = Ast::parse(formula).unwrap().lower(&[]).unwrap().program().clone();
+    assert_eq!(as_it_stands.shortened(cube(0.25, 1.0)).map(|short| short.operations()), None);
 }
 
 /// What random programs come to on random boxes has their signs there, in doubles, and is undefined where they are.
