@@ -9,27 +9,19 @@ use crate::Span;
 /// More steps than bisection alone would need to pass all doubles.
 const STEPS: u32 = 2100;
 
-/// A slope takes as long as several values: another one is asked for when a step narrows less than so many times.
-const WORTH_A_SLOPE: f64 = 16.0;
-
 impl Line<'_> {
     /// Narrows `stretch`, on which F is strictly monotone and continuous and has a root, around that root: until it is
     /// no wider than `tolerance`, or until rounding hides on which side of a point the root lies.
     pub(super) fn enclose_root(&mut self, stretch: Span, tolerance: f64) -> Span {
         let mut root = stretch;
-        let mut slope = self.course(root).slope.interval;
-        let mut is_fresh = true;
         for _ in 0..STEPS {
             let width = root.end - root.start;
+            let slope = self.course(root).slope.interval;
             root = self.newton_step(root, slope);
-            let left = root.end - root.start;
-            if left <= tolerance || is_fresh && left > 0.75 * width {
+            let stalled = root.end - root.start > 0.75 * width;
+            if stalled || root.end - root.start <= tolerance {
                 // The slope of a narrow stretch is all but a number: one more value gives all the digits there are.
                 return self.newton_step(root, slope);
-            }
-            is_fresh = left > width / WORTH_A_SLOPE;
-            if is_fresh {
-                slope = self.course(root).slope.interval;
             }
         }
         root
