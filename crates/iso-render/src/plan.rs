@@ -32,7 +32,7 @@ pub struct Plan {
     arguments: [Decision<Axis>; 3],
     constants: [Decision<Given>; 4],
     kernels: [Decision<Kernel>; Kernel::ALL.len()],
-    /// Whether none of them is compiled ahead.
+    /// Whether the method compiles none of them ahead.
     is_left_to_places: bool,
     passes: [Decision<Pass>; 6],
     buffers: [Decision<Buffer>; 6],
@@ -211,7 +211,11 @@ impl Plan {
     pub fn compiled_ahead(&self) -> impl Iterator<Item = Kernel> {
         let taken = self.kernels.iter().filter(|kernel| kernel.taken).map(|kernel| kernel.subject);
         let has_forms = taken.clone().any(|kernel| matches!(kernel, Kernel::Forms | Kernel::ParallelForms));
-        taken.filter(move |kernel| !self.is_left_to_places && kernel.is_compiled_ahead(has_forms))
+        let fits = self.runs(Pass::Fit);
+        taken.filter(move |&kernel| match kernel {
+            Kernel::ValueEnclosures if fits => true,
+            _ => !self.is_left_to_places && kernel.is_compiled_ahead(has_forms),
+        })
     }
 
     /// Compiles these kernels, so that the time it takes is known.
@@ -282,9 +286,13 @@ impl Wanted<'_> {
 
     fn kernel(&self, kernel: Kernel) -> Verdict {
         match self.kernel_of_whole(kernel) {
-            (true, _) if self.is_left_to_places() => {
-                (true, "asked for where boxes leave less of F; compiled for each place when asked for often")
-            }
+            (true, _) if self.is_left_to_places() => match kernel {
+                Kernel::ValueEnclosures if !self.box_is_given => (true, "a box is fitted around the surface"),
+                _ => (
+                    true,
+                    "asked for where boxes leave less of F; compiled for each place when asked for often",
+                ),
+            },
             verdict => verdict,
         }
     }

@@ -96,6 +96,9 @@ fn nothing_is_compiled_ahead_of_large_formulas_of_which_less_is_left_in_places()
             assert_eq!(compiled.is_empty(), matches!(method, Method::Certified { .. }), "{method:?}");
         }
     }
+    let certified = Method::Certified { accuracy: Certified::ACCURACY };
+    let fitted = Plan::new(&Wanted { box_is_given: false, ..wanted(&program, certified, ALL) });
+    assert_eq!(planned(&fitted), [Kernel::ValueEnclosures], "a box is fitted by it");
 }
 
 #[test]
