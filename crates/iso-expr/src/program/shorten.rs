@@ -99,9 +99,7 @@ impl Program {
             demands: vec![Demand::Nothing; self.nodes.len()],
             decisions: vec![None; self.nodes.len()],
         };
-        for output in &self.outputs {
-            findings.demands[output.index()] = Demand::Side(0.0);
-        }
+        findings.demands[self.outputs[0].index()] = Demand::Side(0.0);
         for (id, node) in self.iter().rev() {
             if let (Node::Apply(operation, operands), true) =
                 (node, findings.demands[id.index()] != Demand::Nothing)
@@ -188,7 +186,6 @@ impl Findings {
                 _ => None,
             });
         self.decisions[id.index()] = decision;
-        let arity = operation.arity();
         // Differences of doubles have the signs that those of real numbers have.
         let exact = |operand: NodeId| match program.node(operand) {
             Node::Constant(constant) if constant.is_exact() => Some(constant.value()),
@@ -205,7 +202,7 @@ impl Findings {
             (None, O::Add, Demand::Side(0.0)) if let Some(of) = exact(operands[1]) => {
                 &[(0, Demand::Side(-of)), (1, Demand::Value)]
             }
-            (None, ..) => &[(0, Demand::Value), (1, Demand::Value), (2, Demand::Value)][..arity],
+            (None, ..) => &[(0, Demand::Value), (1, Demand::Value), (2, Demand::Value)][..operation.arity()],
         };
         for (number, demand) in asked {
             let asked = &mut self.demands[operands[*number].index()];
@@ -249,16 +246,16 @@ fn decision(operation: Operation, operands: [Decorated; 3], result: Decorated) -
 /// What `operation` comes to where it only matters on which side of a number the result lies: that of a minimum is the other
 /// operand's where one is greater all over the box, and that of the one that is less all over it.
 fn decision_by_side(operation: Operation, [a, b, _]: [Decorated; 3], of: f64) -> Option<Decision> {
-    let is_above = |operand: Decorated| operand.interval.lo > of;
-    let is_below = |operand: Decorated| operand.interval.hi < of;
-    let (is_left_out, decides): (&dyn Fn(Decorated) -> bool, &dyn Fn(Decorated) -> bool) = match operation {
-        Operation::Minimum => (&is_above, &is_below),
-        Operation::Maximum => (&is_below, &is_above),
+    let above = [a, b].map(|operand| operand.interval.lo > of);
+    let below = [a, b].map(|operand| operand.interval.hi < of);
+    let (is_left_out, decides) = match operation {
+        Operation::Minimum => (above, below),
+        Operation::Maximum => (below, above),
         _ => return None,
     };
-    if is_common(b) && (is_left_out(b) || decides(a)) {
+    if is_common(b) && (is_left_out[1] || decides[0]) {
         Some(Decision::Operand(0))
-    } else if is_common(a) && (is_left_out(a) || decides(b)) {
+    } else if is_common(a) && (is_left_out[0] || decides[1]) {
         Some(Decision::Operand(1))
     } else {
         None

@@ -120,3 +120,35 @@ fn scaled(interval: Interval, factor: f64) -> Interval {
         Interval { lo: round_down(b), hi: round_up(a) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use glam::DVec3;
+    use iso_expr::{Ast, Interpreter};
+
+    use super::*;
+    use crate::Surface;
+    use crate::certified::kernels::Formulas;
+
+    /// Where y is positive x is left of a minimum, which has its sign but not its values.
+    #[test]
+    fn a_stretch_that_leaves_a_place_is_judged_by_the_whole_formula_all_along() {
+        let formula = Ast::parse("min(x, y)").unwrap().lower(&[]).unwrap();
+        let surface = Surface::new(Arc::new(Interpreter), formula.program().simplified());
+        let whole = Kernels::of(&surface).unwrap();
+        let place = [(-4.0, 4.0), (0.5, 1.5), (-1.0, 1.0)].map(|(lo, hi)| Interval { lo, hi });
+        let local = whole.shortened(&Formulas::default(), place).unwrap();
+        let ray = Ray { origin: DVec3::Y, direction: DVec3::X };
+        let scratch = &mut Scratch::default();
+        let (kernels, asked) = (&whole, &whole);
+        let mut line = Line { kernels, local: &local, asked, scratch, ray, evaluations: 0, operations: 0 };
+        for (end, expected) in [(3.0, 2.0), (5.0, 1.0), (3.5, 2.0)] {
+            line.enter(Span { start: 0.0, end });
+            let found = [line.value_at(2.0), line.course(Span { start: 2.0, end: 2.0 }).value.interval];
+            assert!(found.iter().all(|value| value.contains(expected)), "up to {end}: {found:?}");
+            assert!(found.iter().all(|value| value.width() < 0.5), "up to {end}: {found:?}");
+        }
+    }
+}

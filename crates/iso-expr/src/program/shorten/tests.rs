@@ -14,9 +14,17 @@ fn operations_left(formula: &str, lo: f64, hi: f64) -> Option<usize> {
     Some(program(formula).shortened(cube(lo, hi))?.operations())
 }
 
+/// Asserts that no more than so many operations are left of each formula.
+fn assert_left(cases: &[(&str, usize)]) {
+    for (formula, operations) in cases {
+        let left = operations_left(formula, 0.25, 1.0);
+        assert!(left.is_some_and(|left| left <= *operations), "{formula}: {left:?}");
+    }
+}
+
 #[test]
 fn branches_that_are_never_taken_are_left_out() {
-    let cases = [
+    assert_left(&[
         ("min(x^2 + 1, sin(y) - 2)", 2),
         ("max(x^2 + 1, sin(y) - 2)", 2),
         ("min(x, min(y + 7, min(z + 8, x*y + 9)))", 0),
@@ -27,16 +35,12 @@ fn branches_that_are_never_taken_are_left_out() {
         ("y * sign(x - 3)", 1),
         ("y + floor(2.5 + x/4) * exp(x)", 3),
         ("sqrt(max(x - 4, 0)^2 + max(y - 4, 0)^2) + z", 1),
-    ];
-    for (formula, operations) in cases {
-        let left = operations_left(formula, 0.25, 1.0);
-        assert!(left.is_some_and(|left| left <= operations), "{formula}: {left:?}");
-    }
+    ]);
 }
 
 #[test]
 fn branches_that_do_not_matter_to_the_sign_are_left_out() {
-    let cases = [
+    assert_left(&[
         ("min(x - 0.5, y)", 1),
         ("max(x - 0.5, -y)", 1),
         ("-min(x - 0.5, y + z)", 2),
@@ -49,11 +53,7 @@ fn branches_that_do_not_matter_to_the_sign_are_left_out() {
         ("max(x, y - 0.5) + -0.6", 1),
         // It may be undefined, which is for the other to say.
         ("min(x, 9 + sqrt(y - 0.5))", 3),
-    ];
-    for (formula, operations) in cases {
-        let left = operations_left(formula, 0.25, 1.0);
-        assert!(left.is_some_and(|left| left <= operations), "{formula}: {left:?}");
-    }
+    ]);
 }
 
 #[test]
