@@ -32,8 +32,8 @@ pub enum Kernel {
 }
 
 impl Kernel {
-    /// Formulas of more operations have no forms, which take some twenty times as many.
-    pub(crate) const WITH_FORMS: usize = 100;
+    /// Formulas of more operations have no forms, which take some forty times as many, and a fraction of a second to be compiled.
+    pub(crate) const WITH_FORMS: usize = 600;
 
     /// All kernels.
     pub const ALL: [Self; 9] = [

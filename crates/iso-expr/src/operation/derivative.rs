@@ -143,6 +143,13 @@ pub(super) fn multiply(chain: &mut Chain<'_>) -> Option<NodeId> {
 /// (a′ − (a/b)·b′) / b
 pub(super) fn divide(chain: &mut Chain<'_>) -> Option<NodeId> {
     let ([_, b, _], [da, db, _]) = (chain.operands, chain.derivatives);
+    if let (None, Some(db)) = (da, db)
+        && chain.is_sum_of_exponentials(b)
+    {
+        let relative = chain.relative(db, b);
+        let growth = chain.product(chain.result, Some(relative));
+        return chain.negated(growth);
+    }
     let correction = chain.product(chain.result, db);
     let numerator = chain.difference(da, correction)?;
     Some(chain.apply(Operation::Divide, &[numerator, b]))

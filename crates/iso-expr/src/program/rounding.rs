@@ -40,8 +40,17 @@ impl Program {
         for (index, node) in self.nodes.iter().enumerate().rev() {
             let Some(slope) = slopes[index] else { continue };
             if let Some(rounding) = program.rounding(node, places[index]) {
-                let slope = program.apply(Operation::Absolute, &[slope]);
-                let term = program.apply(Operation::Multiply, &[slope, rounding]);
+                let term = match program.node(slope) {
+                    Node::Apply(Operation::Divide, [numerator, sum, _])
+                        if program.is_part_of_exponentials(places[index], sum) =>
+                    {
+                        program.rounding_in_sum(numerator, sum)
+                    }
+                    _ => {
+                        let slope = program.apply(Operation::Absolute, &[slope]);
+                        program.apply(Operation::Multiply, &[slope, rounding])
+                    }
+                };
                 bound = program.sum(bound, Some(term));
             }
             match *node {
@@ -108,6 +117,16 @@ impl Program {
             }
             _ => Some(self.not_underflowing(size)),
         }
+    }
+
+    /// The same of what is a part of `sum`, which has positive terms, times |numerator / sum|, a slope: the part is no larger than the sum,
+    /// which a quotient of enclosures does not show, and of sums of exponentials over large boxes far from it.
+    fn rounding_in_sum(&mut self, numerator: NodeId, sum: NodeId) -> NodeId {
+        let [one, least] = [1.0, f64::MIN_POSITIVE].map(|value| self.literal(value));
+        let below = self.apply(Operation::Divide, &[least, sum]);
+        let part = self.apply(Operation::Maximum, &[one, below]);
+        let numerator = self.apply(Operation::Absolute, &[numerator]);
+        self.apply(Operation::Multiply, &[numerator, part])
     }
 
     /// Rounding below the least normal number is no finer than there.

@@ -55,8 +55,9 @@ pub(super) struct Formula {
     /// Before each kernel is compiled that is not compiled ahead.
     patience_for: [Patience; Kernel::ALL.len()],
     has_branches: bool,
-    /// Whether the formula that this is, or comes from, is small enough for forms.
-    may_have_forms: bool,
+    /// What is left of it in places must have so many operations to have forms. These take long to make, and pay where rays of many places
+    /// ask for the same ones.
+    least_with_forms: usize,
     /// Whether its forms are asked for. That depends on the formula alone, so that all engines prove the same.
     has_forms: bool,
     /// How many operations each kernel takes, counted when first asked for.
@@ -93,7 +94,7 @@ impl Formulas {
         let operations = program.operations() as u64;
         let patience = Patience::limited(&program);
         let surface = outer.surface.reduced_to(program);
-        let formula = Arc::new(Formula::new(surface, patience, outer.may_have_forms));
+        let formula = Arc::new(Formula::new(surface, patience, outer.least_with_forms));
         if self.have_room() {
             self.room.update(Ordering::Relaxed, Ordering::Relaxed, |room| room.saturating_sub(operations));
             alike.push(Arc::clone(&formula));
@@ -143,11 +144,12 @@ impl Patience {
 }
 
 impl Formula {
-    fn new(surface: Surface, patience: Patience, may_have_forms: bool) -> Self {
-        let has_branches = surface.program().has_branches();
+    fn new(surface: Surface, patience: Patience, least_with_forms: usize) -> Self {
+        let program = surface.program();
+        let has_branches = program.has_branches();
         Self {
-            may_have_forms,
-            has_forms: may_have_forms && Kernel::Forms.pays(surface.program()),
+            least_with_forms,
+            has_forms: program.operations() >= least_with_forms && Kernel::Forms.pays(program),
             patience_for: Kernel::ALL.map(|_| Patience::limited(surface.program())),
             surface: Arc::new(surface),
             compiled: OnceLock::new(),
@@ -205,13 +207,17 @@ impl Kernels {
     /// When the engine cannot compile one.
     pub(super) fn of(surface: &Surface) -> Result<Self, CompileError> {
         let program = surface.program();
-        let may_have_forms = program.operations() <= Kernel::WITH_FORMS;
+        let least_with_forms = match program.operations() {
+            operations if operations > Kernel::WITH_FORMS => usize::MAX,
+            operations if Kernel::are_left_to_places(program) => operations / 2,
+            _ => 0,
+        };
         let formula = if Kernel::are_left_to_places(program) {
-            Formula::new(surface.made_for_few_runs(), Patience::limited(program), may_have_forms)
+            Formula::new(surface.made_for_few_runs(), Patience::limited(program), least_with_forms)
         } else {
             let has_forms = Kernel::Forms.pays(program);
             Kernel::of_proofs(has_forms).try_for_each(|kernel| surface.compile(kernel))?;
-            Formula::new(surface.clone(), Patience::endless(), may_have_forms)
+            Formula::new(surface.clone(), Patience::endless(), least_with_forms)
         };
         Ok(Self { formula: Arc::new(formula), domain: [Interval::ENTIRE; 3] })
     }

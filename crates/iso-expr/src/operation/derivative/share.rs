@@ -1,20 +1,34 @@
 //! The shares of exponentials in a sum of them, by which smooth minima and maxima are differentiated.
 //!
-//! The derivative of ln(eᵃ + eᵇ) is a′·eᵃ/(eᵃ + eᵇ) + b′·eᵇ/(eᵃ + eᵇ). The quotients are no more than 1, in doubles too, for sums and
-//! quotients are rounded monotonously. Interval arithmetic does not see that, and its quotients grow exponentially with
-//! the box. Written as min(1, ·), which changes no value, they stay bounded.
+//! The derivative of ln(eᵃ + eᵇ) is a′·eᵃ/(eᵃ + eᵇ) + b′·eᵇ/(eᵃ + eᵇ). Interval arithmetic does not see that both exponentials of a
+//! quotient are one, and its quotients grow exponentially with the box. 1/(1 + eᵇ⁻ᵃ) is the same, takes a and b once each, and is all but
+//! certain where one of them is far below the other. It takes an exponential for each pair of terms, and so of many terms
+//! the quotient remains, written as min(1, ·): that changes no value, for sums and quotients are rounded monotonously, and is bounded.
 
 use super::Chain;
-use crate::{Node, NodeId, Operation};
+use crate::{Node, NodeId, Operation, Program};
 
 /// Sums of more terms are differentiated like anything else.
 const MOST_TERMS: usize = 64;
 
+/// Of more terms shares are quotients.
+const MOST_PAIRED: usize = 4;
+
 /// The terms of a sum.
 struct Exponentials {
+    /// All but the constants.
     terms: Vec<NodeId>,
-    /// How many terms there are, constants included.
-    count: usize,
+    constants: Vec<NodeId>,
+}
+
+impl Exponentials {
+    fn count(&self) -> usize {
+        self.terms.len() + self.constants.len()
+    }
+
+    fn are_paired(&self) -> bool {
+        self.count() <= MOST_PAIRED
+    }
 }
 
 /// The least and the greatest of some nodes.
@@ -36,50 +50,67 @@ impl Means {
     }
 }
 
+impl Program {
+    /// The exponentials among the terms of a sum, all of whose other terms are positive.
+    fn exponentials(&self, sum: NodeId) -> Option<Exponentials> {
+        let mut found = Exponentials { terms: Vec::new(), constants: Vec::new() };
+        let mut parts = vec![sum];
+        while let Some(part) = parts.pop() {
+            match self.node(part) {
+                Node::Apply(Operation::Add, [a, b, _]) => parts.extend([b, a]),
+                Node::Apply(Operation::Exp, _) => found.terms.push(part),
+                Node::Constant(constant) if constant.enclosure().lo > 0.0 => found.constants.push(part),
+                _ => return None,
+            }
+            if found.count() > MOST_TERMS {
+                return None;
+            }
+        }
+        (!found.terms.is_empty()).then_some(found)
+    }
+
+    /// Whether a node is a sum of exponentials and positive constants, and `part` is the sum of all or of some of them.
+    pub(crate) fn is_part_of_exponentials(&self, part: NodeId, sum: NodeId) -> bool {
+        let mut terms = vec![sum];
+        let is_part = std::iter::from_fn(|| {
+            let term = terms.pop()?;
+            if let Node::Apply(Operation::Add, [a, b, _]) = self.node(term) {
+                terms.extend([a, b]);
+            }
+            Some(term)
+        });
+        self.exponentials(sum).is_some() && is_part.into_iter().any(|term| term == part)
+    }
+}
+
 impl Chain<'_> {
     /// derivative / sum
     pub(super) fn relative(&mut self, derivative: NodeId, sum: NodeId) -> NodeId {
-        match self.exponentials(sum) {
+        match self.program.exponentials(sum) {
             Some(exponentials) => self.distributed(derivative, sum, &exponentials),
             None => self.apply(Operation::Divide, &[derivative, sum]),
         }
     }
 
+    /// Whether shares are told of its terms.
+    pub(super) fn is_sum_of_exponentials(&self, sum: NodeId) -> bool {
+        self.program.exponentials(sum).is_some()
+    }
+
     /// exponential · derivative, where the derivative may be a quotient by a sum of which this exponential is a term
     pub(super) fn exponential_product(&mut self, exponential: NodeId, derivative: NodeId) -> Option<NodeId> {
         if let Node::Apply(Operation::Divide, [numerator, sum, _]) = self.program.node(derivative)
-            && self.exponentials(sum).is_some_and(|exponentials| exponentials.terms.contains(&exponential))
+            && let Some(exponentials) = self.program.exponentials(sum)
+            && exponentials.terms.contains(&exponential)
         {
-            let share = self.share(exponential, sum);
+            let share = self.share(exponential, sum, &exponentials);
             return self.product(share, Some(numerator));
         }
         self.product(exponential, Some(derivative))
     }
 
-    /// The exponentials among the terms of a sum, all of whose other terms are no less than zero.
-    fn exponentials(&self, sum: NodeId) -> Option<Exponentials> {
-        let (mut exponentials, mut terms) = (Vec::new(), vec![sum]);
-        let mut count = 0;
-        while let Some(term) = terms.pop() {
-            match self.program.node(term) {
-                Node::Apply(Operation::Add, [a, b, _]) => {
-                    terms.extend([b, a]);
-                    continue;
-                }
-                Node::Apply(Operation::Exp, _) => exponentials.push(term),
-                Node::Constant(constant) if constant.enclosure().lo >= 0.0 => {}
-                _ => return None,
-            }
-            count += 1;
-            if count > MOST_TERMS {
-                return None;
-            }
-        }
-        (!exponentials.is_empty()).then_some(Exponentials { terms: exponentials, count })
-    }
-
-    /// A sum of multiples of the exponentials over their sum, term by term. It is a mean of what they are multiplied by, and is
-    /// bounded by the least and the greatest of that.
+    /// A sum of multiples of the exponentials over their sum, term by term. It is a mean of what they are multiplied by. If quotients by
+    /// the sum do not tell, it is bounded by the least and the greatest of that.
     fn distributed(&mut self, derivative: NodeId, sum: NodeId, exponentials: &Exponentials) -> NodeId {
         let (mut total, mut terms) = (None, vec![derivative]);
         let mut means = Means::default();
@@ -91,16 +122,19 @@ impl Chain<'_> {
             let Some((factor, exponential)) = self.multiple(term, &exponentials.terms) else {
                 return self.apply(Operation::Divide, &[derivative, sum]);
             };
-            let share = self.share(exponential, sum);
+            let share = self.share(exponential, sum, exponentials);
             let part = self.product(share, Some(factor));
             total = self.sum(total, part);
             means.include(self, factor);
         }
-        if means.count < exponentials.count {
+        let total = total.expect("a sum has terms");
+        if exponentials.are_paired() {
+            return total;
+        }
+        if means.count < exponentials.count() {
             let zero = self.literal(0.0);
             means.include(self, zero);
         }
-        let total = total.expect("a sum has terms");
         let (Some(least), Some(greatest)) = (means.least, means.greatest) else { return total };
         let total = self.apply(Operation::Maximum, &[total, least]);
         self.apply(Operation::Minimum, &[total, greatest])
@@ -123,9 +157,27 @@ impl Chain<'_> {
     }
 
     /// exponential / sum
-    fn share(&mut self, exponential: NodeId, sum: NodeId) -> NodeId {
-        let quotient = self.apply(Operation::Divide, &[exponential, sum]);
+    fn share(&mut self, exponential: NodeId, sum: NodeId, exponentials: &Exponentials) -> NodeId {
         let one = self.literal(1.0);
-        self.apply(Operation::Minimum, &[quotient, one])
+        if !exponentials.are_paired() {
+            let quotient = self.apply(Operation::Divide, &[exponential, sum]);
+            return self.apply(Operation::Minimum, &[quotient, one]);
+        }
+        let own = self.program.node(exponential).operands()[0];
+        let mut others = exponentials.terms.clone();
+        let place = others.iter().position(|term| *term == exponential).expect("it is one of the terms");
+        others.remove(place);
+        let exponents = others.into_iter().map(|term| self.program.node(term).operands()[0]);
+        let mut exponents: Vec<_> = exponents.collect();
+        exponents.extend(exponentials.constants.iter().map(|term| self.apply(Operation::Ln, &[*term])));
+        let ratios = exponents.into_iter().map(|exponent| {
+            let difference = self.apply(Operation::Subtract, &[exponent, own]);
+            self.apply(Operation::Exp, &[difference])
+        });
+        let ratios: Vec<_> = ratios.collect();
+        let others = ratios.into_iter().reduce(|sum, ratio| self.apply(Operation::Add, &[sum, ratio]));
+        let Some(others) = others else { return one };
+        let whole = self.apply(Operation::Add, &[one, others]);
+        self.apply(Operation::Divide, &[one, whole])
     }
 }

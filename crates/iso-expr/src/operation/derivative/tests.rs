@@ -93,10 +93,12 @@ fn derivatives_of_one_operand_twice_agree_with_difference_quotients() {
 }
 
 /// Smooth minima of distances: their derivatives are means of those of the distances.
-const SMOOTH_MINIMA: [&str; 3] = [
+const SMOOTH_MINIMA: [&str; 5] = [
     "-ln(exp(-8x) + exp(-8*(y - z)))/8",
     "-ln(exp(-3*sqrt(x^2 + y^2 + 1)) + exp(-3*hypot(y, z)) + exp(-3*(x + 2)))/3",
     "-ln(exp(-5*(-ln(exp(-5x) + exp(-5y))/5)) + exp(-5z) + 2)/5",
+    "-ln(exp(-2x) + exp(-2y) + exp(-2z) + exp(-x - y) + exp(-y - z) + 1)/2",
+    "ln(exp(x + y) + (exp(y + x) + exp(z)))",
 ];
 
 fn program(formula: &str) -> Program {
@@ -110,6 +112,32 @@ fn derivatives_of_smooth_minima_agree_with_difference_quotients() {
         let share = check(&program(formula), &mut random);
         assert!(share > 0.3, "{formula} was compared at {share} of the points");
     }
+}
+
+#[test]
+fn second_derivatives_of_smooth_minima_agree_with_difference_quotients() {
+    let mut random = Random::new(5);
+    for formula in SMOOTH_MINIMA {
+        let gradient = program(formula).with_gradient();
+        for partial in &gradient.outputs()[1..] {
+            let mut slope = gradient.clone();
+            slope.set_outputs(vec![*partial]);
+            let share = check(&slope.pruned(), &mut random);
+            assert!(share > 0.2, "{formula} was compared at {share} of the points");
+        }
+    }
+}
+
+/// Where one term is far above the others over all of a box, the derivative is all but that of its exponent, however wide the box is.
+#[test]
+fn derivatives_of_smooth_minima_are_certain_far_from_the_seam() {
+    let domain = [(1.0, 2.0), (-2.0, -1.0), (-3.0, 3.0)];
+    let domain = domain.map(|(lo, hi)| crate::Interval::new(lo, hi).unwrap());
+    let mut slope = program("ln(exp(9x) + exp(9y))").with_gradient();
+    slope.set_outputs(vec![slope.outputs()[1]]);
+    let range = slope.pruned().pieces(domain).next().unwrap();
+    // 1 − 1/(1 + e⁻¹⁸) = 1.52·10⁻⁸
+    assert!(9.0 - range.lo < 1.4e-7 && range.contains(9.0 - 1e-8), "{range}");
 }
 
 #[test]

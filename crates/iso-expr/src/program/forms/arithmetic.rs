@@ -86,15 +86,15 @@ impl Builder {
         }
     }
 
-    pub(super) fn quotient(&mut self, x: Form, y: Form) -> Form {
-        let reciprocal = self.reciprocal(y);
-        let is_one = x.rest.is_none() && x.middle == self.0.literal(1.0);
-        if is_one { reciprocal } else { self.product(x, reciprocal) }
+    /// x·y, or x where y is 1.
+    pub(super) fn multiple(&mut self, x: Form, y: Form) -> Form {
+        let is_one = y.rest.is_none() && y.middle == self.0.literal(1.0);
+        if is_one { x } else { self.product(y, x) }
     }
 
     /// 1/(m + Δ) = 1/m − Δ/m² + Δ²/(m²·(m + Δ)), whose last term has the sign of m and is at most r²/(m²·(|m| − r)) for the
     /// deviation r.
-    fn reciprocal(&mut self, x: Form) -> Form {
+    pub(super) fn reciprocal(&mut self, x: Form) -> Form {
         let one = self.0.literal(1.0);
         let inverse = self.of(Operation::Divide, one, x.middle);
         let magnitude = self.magnitude_of(inverse);

@@ -2,7 +2,7 @@
 //!
 //! Where a choice is certain the form is the one chosen. Where it is not, it holds all that may be chosen.
 
-use super::{Builder, Form, NodeId, Operation};
+use super::{Builder, Form, NodeId, Operation, ROUNDING};
 
 /// What is known of the sign of a form.
 struct Signed {
@@ -14,37 +14,64 @@ struct Signed {
     magnitude: NodeId,
 }
 
+/// The positive part of a number is `weight` times that number, and no more than twice `half` besides.
+struct Chord {
+    /// From 0 to 1.
+    weight: NodeId,
+    /// 1 − `weight`.
+    other: NodeId,
+    half: NodeId,
+}
+
 impl Builder {
+    /// Twice the positive part of x, less x.
     pub(super) fn absolute(&mut self, x: Form) -> Form {
-        let Signed { is_certain, sign, magnitude } = self.signed(x);
-        let (zero, half) = (self.0.literal(0.0), self.scaled(0.5, magnitude));
-        let known = self.magnitude_of(x.middle);
-        let middle = self.either(is_certain, known, half);
-        let slopes = x.slopes.map(|slope| {
-            slope.map(|slope| {
-                let turned = self.times(sign, slope);
-                self.either(is_certain, turned, zero)
-            })
-        });
-        let rest = self.either(is_certain, x.rest.unwrap_or(zero), half);
-        Form { middle, slopes, rest: self.rounded(Some(rest), x.size), size: x.size }
+        let Chord { weight, other, half } = self.chord(x);
+        let sign = self.of(Operation::Subtract, weight, other);
+        let middle = self.times(sign, x.middle);
+        let off = self.scaled(2.0, half);
+        let middle = self.of(Operation::Add, middle, off);
+        let slopes = x.slopes.map(|slope| slope.map(|slope| self.times(sign, slope)));
+        let magnitude = self.magnitude_of(sign);
+        let rest = x.rest.map(|rest| self.times(magnitude, rest));
+        let rest = self.plus(rest, Some(off));
+        Form { middle, slopes, rest: self.rounded(rest, x.size), size: x.size }
     }
 
-    /// The maximum for `toward` addition, the minimum for subtraction: ½(x + y) ± ½|x − y|.
+    /// The maximum for `toward` addition, the minimum for subtraction.
+    ///
+    /// For D = x − y between lo and hi, D's positive part is hi/(hi − lo)·D where D is lo or hi, and exceeds that by no more
+    /// than it does at 0.
     pub(super) fn extremum(&mut self, x: Form, y: Form, toward: Operation) -> Form {
-        let difference = self.difference(x, y);
-        let Signed { is_certain, sign, magnitude } = self.signed(difference);
-        let half = self.scaled(0.5, sign);
-        let middle = self.0.literal(0.5);
-        let chosen = self.of(toward, middle, half);
-        let weight = self.either(is_certain, chosen, middle);
-        let mixed = self.mixture(weight, x, y);
-        let quarter = self.scaled(0.25, magnitude);
-        let zero = self.0.literal(0.0);
-        let off = self.either(is_certain, zero, quarter);
-        let middle = self.of(toward, mixed.middle, off);
-        let rest = self.plus(mixed.rest, Some(off));
+        let difference = match toward {
+            Operation::Add => self.difference(x, y),
+            _ => self.difference(y, x),
+        };
+        let Chord { weight, other, half } = self.chord(difference);
+        let mixed = self.mixture((weight, other), x, y);
+        let middle = self.of(toward, mixed.middle, half);
+        let rest = self.plus(mixed.rest, Some(half));
         Form { middle, rest: self.rounded(rest, mixed.size), ..mixed }
+    }
+
+    /// The chord of the positive part of the numbers of a form.
+    fn chord(&mut self, x: Form) -> Chord {
+        let [zero, one] = [0.0, 1.0].map(|value| self.0.literal(value));
+        let deviation = self.deviation(x).unwrap_or(zero);
+        let rounding = self.scaled(ROUNDING, x.size);
+        let deviation = self.of(Operation::Add, deviation, rounding);
+        let most = self.of(Operation::Add, deviation, x.middle);
+        let most = self.of(Operation::Maximum, most, zero);
+        let least = self.of(Operation::Subtract, deviation, x.middle);
+        let least = self.of(Operation::Maximum, least, zero);
+        let width = self.of(Operation::Add, most, least);
+        let width = self.larger(width);
+        let weight = self.of(Operation::Divide, most, width);
+        let other = self.of(Operation::Subtract, one, weight);
+        let above = self.times(other, most);
+        let below = self.times(weight, least);
+        let off = self.of(Operation::Maximum, above, below);
+        Chord { weight, other, half: self.scaled(0.5, off) }
     }
 
     pub(super) fn sign(&mut self, x: Form) -> Form {
@@ -80,7 +107,8 @@ impl Builder {
         let is_false = self.of(Operation::Equal, magnitude, zero);
         let weight = self.either(is_false, zero, half);
         let weight = self.either(is_true, one, weight);
-        let mixed = self.mixture(weight, x, y);
+        let other = self.of(Operation::Subtract, one, weight);
+        let mixed = self.mixture((weight, other), x, y);
         let difference = self.difference(x, y);
         let magnitude = self.magnitude(difference);
         let between = self.scaled(0.5, magnitude);
@@ -98,10 +126,8 @@ impl Builder {
         Form { middle, slopes: [None; 3], rest: Some(rest), size: one }
     }
 
-    /// weight·x + (1 − weight)·y, for a weight of 0, ½ or 1.
-    fn mixture(&mut self, weight: NodeId, x: Form, y: Form) -> Form {
-        let one = self.0.literal(1.0);
-        let other = self.of(Operation::Subtract, one, weight);
+    /// weight·x + other·y, for weights that sum up to 1.
+    pub(super) fn mixture(&mut self, (weight, other): (NodeId, NodeId), x: Form, y: Form) -> Form {
         let mut mixed = |x: Option<NodeId>, y: Option<NodeId>| {
             let x = x.map(|x| self.times(weight, x));
             let y = y.map(|y| self.times(other, y));

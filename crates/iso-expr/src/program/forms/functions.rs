@@ -26,6 +26,27 @@ impl Builder {
         self.bent((middle, size), x, (slope, slope), half)
     }
 
+    /// ln(m + Δ) = ln m + Δ/m − q, where 0 ≤ q ≤ ½r²/(m·(m − r)), for −ρ − ln(1 − ρ) = ½ρ² + ⅓ρ³ + … is no more than ½ρ²/(1 − ρ) for
+    /// ρ = r/m < 1.
+    pub(super) fn logarithm(&mut self, x: Form) -> Form {
+        let value = self.0.apply(Operation::Ln, &[x.middle]);
+        let Some(deviation) = self.deviation(x) else { return self.known(value) };
+        let one = self.0.literal(1.0);
+        let distance = self.distance(x.middle, deviation);
+        let stays_away = self.is_positive(distance);
+        let distance = self.provided(stays_away, distance);
+        let slope = self.of(Operation::Divide, one, x.middle);
+        let change = self.of(Operation::Divide, deviation, distance);
+        let quarter = self.scaled(0.25, deviation);
+        let half = self.times(quarter, slope);
+        let half = self.times(half, change);
+        let middle = self.of(Operation::Subtract, value, half);
+        let size = self.magnitude_of(value);
+        let size = self.of(Operation::Add, size, change);
+        let size = self.larger(size);
+        self.bent((middle, size), x, (slope, slope), half)
+    }
+
     /// e^(m + Δ) = e^m·(1 + Δ + q), where 0 ≤ q ≤ ½r²·eʳ. Nothing is said for r > 1.
     pub(super) fn exponential(&mut self, x: Form) -> Form {
         let value = self.0.apply(Operation::Exp, &[x.middle]);
@@ -81,7 +102,7 @@ impl Builder {
 
     /// A function of `x` with this middle and size, and this slope, given with its magnitude; it is off by `half` beside what it is
     /// for the rest of `x`.
-    fn bent(
+    pub(super) fn bent(
         &mut self,
         (middle, size): (NodeId, NodeId),
         x: Form,
@@ -95,7 +116,7 @@ impl Builder {
     }
 
     /// The value of a function at one number.
-    fn known(&mut self, value: NodeId) -> Form {
+    pub(super) fn known(&mut self, value: NodeId) -> Form {
         let size = self.magnitude_of(value);
         let size = self.larger(size);
         Form { middle: value, slopes: [None; 3], rest: self.rounded(None, size), size }

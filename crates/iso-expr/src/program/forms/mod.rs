@@ -9,6 +9,7 @@
 mod arithmetic;
 mod choices;
 mod functions;
+mod smooth;
 #[cfg(test)]
 mod tests;
 
@@ -56,6 +57,19 @@ impl Program {
                         self.exponent(exponent).expect("programs check the exponents of integer powers");
                     builder.power(forms[base.index()], exponent)
                 }
+                Node::Apply(Operation::Ln, [argument, ..]) => {
+                    match builder.logarithm_of_sum(self, argument, &forms) {
+                        Some(logarithm) => logarithm,
+                        None => builder.logarithm(forms[argument.index()]),
+                    }
+                }
+                Node::Apply(Operation::Divide, [numerator, divisor, _]) => {
+                    let reciprocal = match builder.share_in_sum(self, divisor, &forms) {
+                        Some(share) => share,
+                        None => builder.reciprocal(forms[divisor.index()]),
+                    };
+                    builder.multiple(reciprocal, forms[numerator.index()])
+                }
                 Node::Apply(operation, operands) => {
                     let forms = operands.map(|operand| forms[operand.index()]);
                     builder.apply(operation, operands, forms)?
@@ -81,7 +95,7 @@ impl Program {
                 matches!(
                     operation,
                     O::Add | O::Subtract | O::Multiply | O::Divide | O::Negate | O::IntegerPower
-                ) || matches!(operation, O::SquareRoot | O::Exp | O::Sin | O::Cos)
+                ) || matches!(operation, O::SquareRoot | O::Exp | O::Ln | O::Sin | O::Cos)
                     || matches!(operation, O::Absolute | O::Minimum | O::Maximum)
             }
             _ => true,
@@ -133,7 +147,6 @@ impl Builder {
             Operation::Negate => self.negative(a),
             Operation::Multiply if operands[0] == operands[1] => self.square(a),
             Operation::Multiply => self.product(a, b),
-            Operation::Divide => self.quotient(a, b),
             Operation::SquareRoot => self.square_root(a),
             Operation::Exp => self.exponential(a),
             Operation::Sin => self.sine(a),

@@ -7,8 +7,9 @@ use crate::{Ast, Engine, Interpreter, Interval, Operation, Program, Scratch};
 type Form = [f64; PARTS];
 
 /// What has forms beside arithmetic, continuous or not.
-const OTHERS: [Operation; 8] = [
+const OTHERS: [Operation; 9] = [
     Operation::Exp,
+    Operation::Ln,
     Operation::Sin,
     Operation::Cos,
     Operation::Sign,
@@ -102,28 +103,69 @@ fn values_of_all_operations_are_in_their_forms() {
         let program = random.program_of(1 + round % 12, &operations);
         let forms = program.with_forms().expect("all of these have forms");
         let arguments = arguments(&mut random, [1e-9, 1e-3, 0.1, 0.5][round % 4]);
-        let form = form_of(&forms, arguments);
-        if !is_known(&form) {
-            continue;
-        }
-        let value = Interpreter.boxes(&program).unwrap();
-        for _ in 0..10 {
-            let symbols = symbols(&mut random);
-            let point = arguments.map(|argument| member(&mut random, argument, symbols));
-            let enclosure =
-                crate::program::rounding::tests::enclose(&*value, 1, point.map(Interval::point))[0];
-            let Interval { lo, hi } = enclosure.interval;
-            let Twofold(middle, _) = line(form, symbols);
-            let off = (lo - middle).max(middle - hi);
-            assert!(
-                off <= form[4],
-                "{lo} to {hi} is not {middle} ± {} at {symbols:?} of\n{program}",
-                form[4]
-            );
-            compared += 1;
-        }
+        compared += compare(&mut random, &program, (arguments, form_of(&forms, arguments)));
     }
     assert!(compared > 20_000, "only {compared} values were compared");
+}
+
+/// Holds values of a program at members of `arguments` against its form there, and counts them.
+fn compare(random: &mut Random, program: &Program, (arguments, form): ([Form; 3], Form)) -> usize {
+    if !is_known(&form) {
+        return 0;
+    }
+    let value = Interpreter.boxes(program).unwrap();
+    for _ in 0..10 {
+        let symbols = symbols(random);
+        let point = arguments.map(|argument| member(random, argument, symbols));
+        let enclosure = crate::program::rounding::tests::enclose(&*value, 1, point.map(Interval::point))[0];
+        let Interval { lo, hi } = enclosure.interval;
+        let Twofold(middle, _) = line(form, symbols);
+        let off = (lo - middle).max(middle - hi);
+        let rest = form[4];
+        assert!(off <= rest, "{lo} to {hi} is not {middle} ± {rest} at {symbols:?} of\n{program}");
+    }
+    10
+}
+
+/// What is left of a smooth maximum where it is told as one: its form is known wherever e to its deviation is.
+#[test]
+fn smooth_maxima_and_shares_are_in_their_forms() {
+    let formulas = [
+        "ln(exp(x) + exp(y))",
+        "ln(exp(3x - y) + (exp(2y) + 2)) - ln(exp(z) + 0.5)",
+        "1/(1 + exp(x))",
+        "y/(exp(x - y) + 1) - 1/(1 + (exp(3x) + exp(z - x)))",
+        "ln(exp(-8*ln(exp(x) + exp(y))) + exp(-8*z))/8",
+    ];
+    let mut random = Random::new(16);
+    for formula in formulas {
+        let value = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
+        let mut slope = value.with_gradient().simplified();
+        slope.set_outputs(vec![slope.outputs()[1]]);
+        let programs = [value, slope.pruned()].map(|program| (program.with_forms().unwrap(), program));
+        for round in 0..2000 {
+            let arguments = arguments(&mut random, [1e-9, 1e-3, 0.1, 0.5, 3.0, 20.0][round % 6]);
+            for (forms, program) in &programs {
+                let form = form_of(forms, arguments);
+                assert!(is_known(&form), "{form:?} of {formula} over {arguments:?}");
+                compare(&mut random, program, (arguments, form));
+            }
+        }
+    }
+}
+
+/// The rest of a smooth maximum is ⅛r² where both are alike and deviate by r from each other, and nothing far from there.
+#[test]
+fn smooth_maxima_bend_only_where_both_count() {
+    let program = Ast::parse("ln(exp(x) + exp(y))").unwrap().lower(&[]).unwrap().minus_level(0.0);
+    let forms = program.with_forms().unwrap();
+    let rest = |distance: f64, width: f64| {
+        form_of(&forms, [[distance, width, 0.0, 0.0, 0.0], [0.0; PARTS], [0.0; PARTS]])[4]
+    };
+    let close = |found: f64, expected: f64| (found - expected).abs() < 1e-8 * expected + 1e-12;
+    assert!(close(rest(0.0, 0.1), 0.5 * 0.125 * 0.01));
+    assert!(close(rest(0.0, 40.0), 0.5 * 40.0));
+    assert!(rest(30.0, 1.0) < 1e-12);
 }
 
 #[test]
@@ -144,7 +186,8 @@ fn gradients_of_what_has_branches_have_forms() {
 #[test]
 fn gradients_of_what_has_forms_have_forms() {
     let mut random = Random::new(14);
-    let operations = [&ARITHMETIC[..], &[Operation::Exp, Operation::Sin, Operation::Cos]].concat();
+    let operations =
+        [&ARITHMETIC[..], &[Operation::Exp, Operation::Ln, Operation::Sin, Operation::Cos]].concat();
     for round in 0..2000 {
         let program = random.program_of(1 + round % 15, &operations).simplified();
         if program.has_forms() {
