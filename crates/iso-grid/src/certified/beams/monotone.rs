@@ -140,13 +140,16 @@ impl Subdivision<'_> {
         let form = &part.form;
         let tolerance = self.tolerance(part);
         let bounds = self.beam(part.beam).bounds(form.reach, &self.certified.region)?;
-        let known = self.rounding_around(part.kernels, bounds);
         let sight =
             |rounding: &Rounding, beam: &Beam| Sight::new(form, tolerance, rounding.error(beam, form.reach));
-        let rough = known.and_then(|known| sight(&known, self.beam(part.beam)));
-        // A bound on a larger box will do as long as it is nothing beside what is wanted.
-        if rough.as_ref().is_some_and(|sight| SHARP * sight.blur < tolerance) {
-            return rough;
+        // A bound on a larger box will do as long as it is nothing beside what is wanted. Where it was something, it is so nearby.
+        if self.memory.blurred != Some(part.kernels) {
+            let known = self.rounding_around(part.kernels, bounds);
+            let rough = known.and_then(|known| sight(&known, self.beam(part.beam)));
+            if rough.as_ref().is_some_and(|sight| SHARP * sight.blur < tolerance) {
+                return rough;
+            }
+            self.memory.blurred = Some(part.kernels);
         }
         let exact = self.rounding(part.kernels, bounds)?;
         sight(&exact, self.beam(part.beam))
