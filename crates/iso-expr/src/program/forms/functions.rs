@@ -26,6 +26,13 @@ impl Builder {
         self.bent((middle, size), x, (slope, slope), half)
     }
 
+    /// √(x² + y²)
+    pub(super) fn hypotenuse(&mut self, x: Form, y: Form) -> Form {
+        let (x, y) = (self.square(x), self.square(y));
+        let sum = self.sum(x, y);
+        self.square_root(sum)
+    }
+
     /// ln(m + Δ) = ln m + Δ/m − q, where 0 ≤ q ≤ ½r²/(m·(m − r)), for −ρ − ln(1 − ρ) = ½ρ² + ⅓ρ³ + … is no more than ½ρ²/(1 − ρ) for
     /// ρ = r/m < 1.
     pub(super) fn logarithm(&mut self, x: Form) -> Form {

@@ -6,8 +6,9 @@ use crate::{Ast, Engine, Interpreter, Interval, Operation, Program, Scratch};
 /// Numbers of a form: middle, slopes and rest.
 type Form = [f64; PARTS];
 
-/// What has forms beside arithmetic, continuous or not.
-const OTHERS: [Operation; 9] = [
+/// What has forms beside arithmetic; those that are continuous come first.
+const OTHERS: [Operation; 10] = [
+    Operation::Hypotenuse,
     Operation::Exp,
     Operation::Ln,
     Operation::Sin,
@@ -18,6 +19,9 @@ const OTHERS: [Operation; 9] = [
     Operation::Equal,
     Operation::Select,
 ];
+
+/// How many of these are continuous.
+const CONTINUOUS: usize = 5;
 
 /// Forms of x, y and z around a point, so wide.
 fn arguments(random: &mut Random, width: f64) -> [Form; 3] {
@@ -127,6 +131,24 @@ fn compare(random: &mut Random, program: &Program, (arguments, form): ([Form; 3]
     10
 }
 
+#[test]
+fn values_of_each_function_are_in_its_form() {
+    let mut random = Random::new(17);
+    for operation in &OTHERS[..CONTINUOUS] {
+        let mut program = Program::new();
+        let operands = crate::Axis::ALL.map(|axis| program.variable(axis));
+        let output = program.apply(*operation, &operands[..operation.arity()]);
+        program.set_outputs(vec![output]);
+        let forms = program.with_forms().unwrap();
+        let mut compared = 0;
+        for round in 0..4000 {
+            let arguments = arguments(&mut random, [1e-9, 1e-3, 0.1, 0.5][round % 4]);
+            compared += compare(&mut random, &program, (arguments, form_of(&forms, arguments)));
+        }
+        assert!(compared > 10_000, "{operation:?}: only {compared} values were compared");
+    }
+}
+
 /// What is left of a smooth maximum where it is told as one: its form is known wherever e to its deviation is.
 #[test]
 fn smooth_maxima_and_shares_are_in_their_forms() {
@@ -186,8 +208,7 @@ fn gradients_of_what_has_branches_have_forms() {
 #[test]
 fn gradients_of_what_has_forms_have_forms() {
     let mut random = Random::new(14);
-    let operations =
-        [&ARITHMETIC[..], &[Operation::Exp, Operation::Ln, Operation::Sin, Operation::Cos]].concat();
+    let operations = [&ARITHMETIC[..], &OTHERS[..CONTINUOUS]].concat();
     for round in 0..2000 {
         let program = random.program_of(1 + round % 15, &operations).simplified();
         if program.has_forms() {
