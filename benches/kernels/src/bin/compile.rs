@@ -9,14 +9,13 @@ use iso_benches::results::Results;
 use iso_benches::samples::{Samples, rounded};
 use iso_benches::surfaces::SUBJECTS;
 use iso_expr::{Ast, CompileError, Engine, FormulaError, Program};
+use iso_grid::Kernel;
 use iso_jit::Jit;
 
 /// How often each kernel is compiled.
 const TURNS: usize = 9;
 /// Terms of the sums, for growth: each term takes seven operations.
 const TERMS: [usize; 7] = [3, 10, 30, 100, 300, 700, 1_400];
-/// Formulas of more operations are not asked for their forms.
-const WITH_FORMS: usize = 100;
 /// The kernels of one formula, from the point kernel of F to the affine forms of F and its gradient.
 const KERNELS: [&str; 9] = [
     "point",
@@ -58,7 +57,7 @@ fn sum_of_products(terms: usize) -> Result<Program, FormulaError> {
 fn measure(name: &str, value: &Program, results: &mut Results) -> Result<(), Box<dyn Error>> {
     let jit = Jit::new()?;
     let (gradient, rounding) = (value.with_gradient().simplified(), value.with_rounding().simplified());
-    let has_forms = value.has_forms() && value.operations() <= WITH_FORMS;
+    let has_forms = Kernel::Forms.pays(value);
     let forms = has_forms.then(|| gradient.with_forms()).flatten();
     let slope = value.with_slope().simplified();
     let parallel_forms = has_forms.then(|| slope.with_forms()).flatten();
