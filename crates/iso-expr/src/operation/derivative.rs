@@ -144,7 +144,7 @@ pub(super) fn multiply(chain: &mut Chain<'_>) -> Option<NodeId> {
 pub(super) fn divide(chain: &mut Chain<'_>) -> Option<NodeId> {
     let ([_, b, _], [da, db, _]) = (chain.operands, chain.derivatives);
     if let (None, Some(db)) = (da, db)
-        && chain.is_sum_of_exponentials(b)
+        && chain.program.is_sum_of_exponentials(b)
     {
         let relative = chain.relative(db, b);
         let growth = chain.product(chain.result, Some(relative));

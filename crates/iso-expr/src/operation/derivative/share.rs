@@ -51,6 +51,24 @@ impl Means {
 }
 
 impl Program {
+    /// Whether a node is a sum of exponentials and positive constants, and not of too many.
+    pub(crate) fn is_sum_of_exponentials(&self, sum: NodeId) -> bool {
+        self.exponentials(sum).is_some()
+    }
+
+    /// Whether a node is [such a sum](Self::is_sum_of_exponentials), and `part` is the sum of all or of some of its terms.
+    pub(crate) fn is_part_of_exponentials(&self, part: NodeId, sum: NodeId) -> bool {
+        let mut parts = vec![sum];
+        let mut next = || {
+            let part = parts.pop()?;
+            if let Node::Apply(Operation::Add, [a, b, _]) = self.node(part) {
+                parts.extend([a, b]);
+            }
+            Some(part)
+        };
+        self.is_sum_of_exponentials(sum) && std::iter::from_fn(&mut next).any(|other| other == part)
+    }
+
     /// The exponentials among the terms of a sum, all of whose other terms are positive.
     fn exponentials(&self, sum: NodeId) -> Option<Exponentials> {
         let mut found = Exponentials { terms: Vec::new(), constants: Vec::new() };
@@ -68,19 +86,6 @@ impl Program {
         }
         (!found.terms.is_empty()).then_some(found)
     }
-
-    /// Whether a node is a sum of exponentials and positive constants, and `part` is the sum of all or of some of them.
-    pub(crate) fn is_part_of_exponentials(&self, part: NodeId, sum: NodeId) -> bool {
-        let mut terms = vec![sum];
-        let is_part = std::iter::from_fn(|| {
-            let term = terms.pop()?;
-            if let Node::Apply(Operation::Add, [a, b, _]) = self.node(term) {
-                terms.extend([a, b]);
-            }
-            Some(term)
-        });
-        self.exponentials(sum).is_some() && is_part.into_iter().any(|term| term == part)
-    }
 }
 
 impl Chain<'_> {
@@ -90,11 +95,6 @@ impl Chain<'_> {
             Some(exponentials) => self.distributed(derivative, sum, &exponentials),
             None => self.apply(Operation::Divide, &[derivative, sum]),
         }
-    }
-
-    /// Whether shares are told of its terms.
-    pub(super) fn is_sum_of_exponentials(&self, sum: NodeId) -> bool {
-        self.program.exponentials(sum).is_some()
     }
 
     /// exponential · derivative, where the derivative may be a quotient by a sum of which this exponential is a term

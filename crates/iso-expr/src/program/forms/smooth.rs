@@ -31,14 +31,18 @@ struct Share {
 }
 
 impl Builder {
-    /// The logarithm of a sum of exponentials and positive constants; `None` of another sum. `forms` are those of the nodes of
-    /// `source`.
+    /// The logarithm of a [sum of exponentials](Program::is_sum_of_exponentials); `None` of another sum. `forms` are those of the nodes
+    /// of `source`.
     pub(super) fn logarithm_of_sum(&mut self, source: &Program, sum: NodeId, forms: &[Form]) -> Option<Form> {
+        source.is_sum_of_exponentials(sum).then(|| self.logarithm_of_terms(source, sum, forms))?
+    }
+
+    fn logarithm_of_terms(&mut self, source: &Program, sum: NodeId, forms: &[Form]) -> Option<Form> {
         match source.node(sum) {
             Node::Apply(Operation::Exp, [exponent, ..]) => Some(forms[exponent.index()]),
             Node::Apply(Operation::Add, [a, b, _]) => {
-                let a = self.logarithm_of_sum(source, a, forms)?;
-                let b = self.logarithm_of_sum(source, b, forms)?;
+                let a = self.logarithm_of_terms(source, a, forms)?;
+                let b = self.logarithm_of_terms(source, b, forms)?;
                 Some(self.smooth_maximum(a, b))
             }
             Node::Constant(constant) if constant.is_exact() && constant.value() > 0.0 => {
@@ -50,7 +54,7 @@ impl Builder {
         }
     }
 
-    /// The reciprocal of a sum of 1 and of exponentials or positive constants; `None` of another sum.
+    /// The reciprocal of 1 and a sum of exponentials; `None` of another sum.
     pub(super) fn share_in_sum(&mut self, source: &Program, sum: NodeId, forms: &[Form]) -> Option<Form> {
         let Node::Apply(Operation::Add, [a, b, _]) = source.node(sum) else { return None };
         let is_one = |id| match source.node(id) {

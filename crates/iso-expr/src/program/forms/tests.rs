@@ -176,6 +176,22 @@ fn smooth_maxima_and_shares_are_in_their_forms() {
     }
 }
 
+/// Written out, this sum has 10¹² terms.
+#[test]
+fn sums_of_shared_sums_are_not_written_out() {
+    let mut program = Program::new();
+    let [x, y, _] = crate::Axis::ALL.map(|axis| program.variable(axis));
+    let mut sums = [x, y].map(|argument| program.apply(Operation::Exp, &[argument]));
+    for _ in 0..58 {
+        sums = [sums[1], program.apply(Operation::Add, &sums)];
+    }
+    let logarithm = program.apply(Operation::Ln, &[sums[1]]);
+    program.set_outputs(vec![logarithm]);
+    assert_eq!(program.with_forms().unwrap().outputs().len(), PARTS);
+    assert!(program.with_slope().with_forms().is_some());
+    assert_eq!(program.with_rounding().outputs().len(), 5);
+}
+
 /// The rest of a smooth maximum is ⅛r² where both are alike and deviate by r from each other, and nothing far from there.
 #[test]
 fn smooth_maxima_bend_only_where_both_count() {
