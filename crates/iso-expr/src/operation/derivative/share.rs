@@ -56,6 +56,11 @@ impl Program {
         self.exponentials(sum).is_some()
     }
 
+    /// Whether it is, and of so many terms that their shares are told by quotients.
+    pub(crate) fn is_divided_by_terms(&self, sum: NodeId) -> bool {
+        self.exponentials(sum).is_some_and(|exponentials| !exponentials.are_paired())
+    }
+
     /// Whether a node is [such a sum](Self::is_sum_of_exponentials), and `part` is the sum of all or of some of its terms.
     pub(crate) fn is_part_of_exponentials(&self, part: NodeId, sum: NodeId) -> bool {
         let mut parts = vec![sum];

@@ -87,15 +87,17 @@ impl Program {
         Some(program.pruned())
     }
 
-    /// Whether all operations are continuous wherever they are defined, and have forms.
+    /// Whether all operations are continuous wherever they are defined, and have forms that are worth their while: of the logarithm of a
+    /// sum of more than four exponentials, derivatives are made of quotients of which forms seldom say anything.
     pub fn has_forms(&self) -> bool {
         use Operation as O;
         self.nodes.iter().all(|node| match node {
+            Node::Apply(O::Ln, [argument, ..]) => !self.is_divided_by_terms(*argument),
             Node::Apply(operation, _) => {
                 matches!(
                     operation,
                     O::Add | O::Subtract | O::Multiply | O::Divide | O::Negate | O::IntegerPower
-                ) || matches!(operation, O::SquareRoot | O::Hypotenuse | O::Exp | O::Ln | O::Sin | O::Cos)
+                ) || matches!(operation, O::SquareRoot | O::Hypotenuse | O::Exp | O::Sin | O::Cos)
                     || matches!(operation, O::Absolute | O::Minimum | O::Maximum)
             }
             _ => true,
