@@ -140,7 +140,7 @@ pub(super) fn multiply(chain: &mut Chain<'_>) -> Option<NodeId> {
     chain.sum(left, right)
 }
 
-/// (a′ − (a/b)·b′) / b
+/// (a′ − (a/b)·b′) / b, or −(a/b)·(b′/b) for a constant over a sum of exponentials, of which b′/b has shares
 pub(super) fn divide(chain: &mut Chain<'_>) -> Option<NodeId> {
     let ([_, b, _], [da, db, _]) = (chain.operands, chain.derivatives);
     if let (None, Some(db)) = (da, db)

@@ -31,25 +31,6 @@ impl Exponentials {
     }
 }
 
-/// The least and the greatest of some nodes.
-#[derive(Default)]
-struct Means {
-    count: usize,
-    least: Option<NodeId>,
-    greatest: Option<NodeId>,
-}
-
-impl Means {
-    fn include(&mut self, chain: &mut Chain<'_>, node: NodeId) {
-        self.count += 1;
-        let mut extreme = |operation, so_far: Option<NodeId>| {
-            Some(so_far.map_or(node, |so_far| chain.apply(operation, &[so_far, node])))
-        };
-        self.least = extreme(Operation::Minimum, self.least);
-        self.greatest = extreme(Operation::Maximum, self.greatest);
-    }
-}
-
 impl Program {
     /// Whether a node is a sum of exponentials and positive constants, and not of too many.
     pub(crate) fn is_sum_of_exponentials(&self, sum: NodeId) -> bool {
@@ -57,21 +38,21 @@ impl Program {
     }
 
     /// Whether it is, and of so many terms that their shares are told by quotients.
-    pub(crate) fn is_divided_by_terms(&self, sum: NodeId) -> bool {
+    pub(crate) fn has_quotients_for_shares(&self, sum: NodeId) -> bool {
         self.exponentials(sum).is_some_and(|exponentials| !exponentials.are_paired())
     }
 
     /// Whether a node is [such a sum](Self::is_sum_of_exponentials), and `part` is the sum of all or of some of its terms.
     pub(crate) fn is_part_of_exponentials(&self, part: NodeId, sum: NodeId) -> bool {
-        let mut parts = vec![sum];
-        let mut next = || {
-            let part = parts.pop()?;
+        let mut ahead = vec![sum];
+        let mut parts = std::iter::from_fn(|| {
+            let part = ahead.pop()?;
             if let Node::Apply(Operation::Add, [a, b, _]) = self.node(part) {
-                parts.extend([a, b]);
+                ahead.extend([a, b]);
             }
             Some(part)
-        };
-        self.is_sum_of_exponentials(sum) && std::iter::from_fn(&mut next).any(|other| other == part)
+        });
+        self.is_sum_of_exponentials(sum) && parts.any(|other| other == part)
     }
 
     /// The exponentials among the terms of a sum, all of whose other terms are positive.
@@ -118,7 +99,7 @@ impl Chain<'_> {
     /// the sum do not tell, it is bounded by the least and the greatest of that.
     fn distributed(&mut self, derivative: NodeId, sum: NodeId, exponentials: &Exponentials) -> NodeId {
         let (mut total, mut terms) = (None, vec![derivative]);
-        let mut means = Means::default();
+        let mut factors = Vec::new();
         while let Some(term) = terms.pop() {
             if let Node::Apply(Operation::Add, [a, b, _]) = self.program.node(term) {
                 terms.extend([b, a]);
@@ -130,17 +111,22 @@ impl Chain<'_> {
             let share = self.share(exponential, sum, exponentials);
             let part = self.product(share, Some(factor));
             total = self.sum(total, part);
-            means.include(self, factor);
+            factors.push(factor);
         }
         let total = total.expect("a sum has terms");
         if exponentials.are_paired() {
             return total;
         }
-        if means.count < exponentials.count() {
-            let zero = self.literal(0.0);
-            means.include(self, zero);
+        if factors.len() < exponentials.count() {
+            factors.push(self.literal(0.0));
         }
-        let (Some(least), Some(greatest)) = (means.least, means.greatest) else { return total };
+        let mut extreme = |operation| {
+            let factors = factors.iter().copied();
+            factors
+                .reduce(|so_far, factor| self.apply(operation, &[so_far, factor]))
+                .expect("a sum has terms")
+        };
+        let (least, greatest) = (extreme(Operation::Minimum), extreme(Operation::Maximum));
         let total = self.apply(Operation::Maximum, &[total, least]);
         self.apply(Operation::Minimum, &[total, greatest])
     }

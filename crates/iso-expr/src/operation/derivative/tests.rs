@@ -140,10 +140,21 @@ fn derivatives_of_smooth_minima_are_certain_far_from_the_seam() {
     assert!(9.0 - range.lo < 1.4e-7 && range.contains(9.0 - 1e-8), "{range}");
 }
 
+/// The second derivative of ln(eᵘ + eᵛ) by u is a product of two shares.
+#[test]
+fn second_derivatives_of_smooth_maxima_stay_bounded_over_wide_boxes() {
+    let mut slope = program("ln(exp(9x) + exp(9y))").with_gradient().simplified();
+    slope.set_outputs(vec![slope.outputs()[1]]);
+    let mut bend = slope.pruned().with_gradient();
+    bend.set_outputs(vec![bend.outputs()[1]]);
+    let range = bend.pruned().pieces([crate::Interval::new(-9.0, 9.0).unwrap(); 3]).next().unwrap();
+    assert!(range.magnitude() <= 81.0 + 1e-9, "{range}");
+}
+
 #[test]
 fn derivatives_of_smooth_minima_stay_bounded_over_wide_boxes() {
     let domain = [crate::Interval::new(-3.0, 3.0).unwrap(); 3];
-    for formula in [SMOOTH_MINIMA[0], SMOOTH_MINIMA[2]] {
+    for formula in [SMOOTH_MINIMA[0], SMOOTH_MINIMA[2], SMOOTH_MINIMA[3]] {
         let gradient = program(formula).with_gradient();
         for partial in &gradient.outputs()[1..] {
             let mut slope = gradient.clone();

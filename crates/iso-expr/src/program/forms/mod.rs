@@ -92,7 +92,7 @@ impl Program {
     pub fn has_forms(&self) -> bool {
         use Operation as O;
         self.nodes.iter().all(|node| match node {
-            Node::Apply(O::Ln, [argument, ..]) => !self.is_divided_by_terms(*argument),
+            Node::Apply(O::Ln, [argument, ..]) => !self.has_quotients_for_shares(*argument),
             Node::Apply(operation, _) => {
                 matches!(
                     operation,
