@@ -28,6 +28,10 @@ const WIDEST: usize = PAIR * MOST_PAIRS;
 /// compile.
 const LARGEST_SIDE_BY_SIDE: usize = 400;
 
+/// The most operations for each function that takes all pairs at once, for which that decides how many pairs there are. A form of a
+/// logarithm, 252 operations around one call, would take 5 ms longer to compile, and a picture no less time.
+const MOST_BESIDE_A_FUNCTION: usize = 40;
+
 /// Where each argument of `count` points stands, where the outputs go, and `count`, which is not less than the points of one round.
 type Evaluate = unsafe extern "C" fn(*const *const f64, *mut f64, usize);
 
@@ -172,7 +176,7 @@ impl BatchBlueprint<'_> {
 }
 
 /// How many pairs of lanes are evaluated side by side, so that operations need not wait for each other: as many as registers hold
-/// the values of. Where functions are called, they take most of the time, and one pair is enough, unless they take all pairs at
+/// the values of. Where functions are called, they take most of the time, and one pair is enough, unless many of them take all pairs at
 /// once.
 ///
 /// Measured beside one pair: a chain of 300 operations takes 16 instead of 43 ns a point with four pairs, the paper's polynomial
@@ -181,15 +185,17 @@ fn pairs(program: &Program) -> usize {
     if program.operations() > LARGEST_SIDE_BY_SIDE {
         return 1;
     }
-    let called = |operation: &Operation| !values::is_written_out(*operation);
-    let mut operations = program.nodes().iter().filter_map(|node| match node {
-        Node::Apply(operation, _) => Some(operation),
-        _ => None,
-    });
-    if operations.clone().any(|operation| elementary::function(*operation).is_some()) {
+    let operations = || {
+        program.nodes().iter().filter_map(|node| match node {
+            Node::Apply(operation, _) => Some(*operation),
+            _ => None,
+        })
+    };
+    let in_lanes = operations().filter(|operation| elementary::function(*operation).is_some()).count();
+    if in_lanes * MOST_BESIDE_A_FUNCTION >= program.operations() {
         return MOST_PAIRS;
     }
-    if operations.any(called) {
+    if operations().any(|operation| !values::is_written_out(operation)) {
         return 1;
     }
     match REGISTERS / most_alive(program).max(1) {
@@ -248,8 +254,11 @@ mod tests {
     fn pairs_share_the_registers() {
         assert_eq!(pairs(&program("x + y + z")), 4);
         assert_eq!(pairs(&program("x + y + atan(z)")), 1);
+        let in_lanes = if elementary::function(Operation::Ln).is_some() { MOST_PAIRS } else { 1 };
+        assert_eq!(pairs(&program("x + y + ln(z)")), in_lanes);
         let powers =
             (1..12).map(|power| format!("(x + {power})*(y - z)^{power}")).collect::<Vec<_>>().join(" + ");
         assert_eq!(pairs(&program(&powers).with_gradient()), 1);
+        assert_eq!(pairs(&program(&format!("ln({powers} + x)"))), 1);
     }
 }

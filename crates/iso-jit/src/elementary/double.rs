@@ -78,6 +78,19 @@ impl Double {
         sums
     }
 
+    /// Of numbers up to 0.2.
+    pub(super) const fn inverse_hyperbolic_tangent(self) -> Self {
+        let square = self.times(self);
+        let (mut power, mut sum) = (self, Self::ZERO);
+        let mut degree = 1;
+        while degree < 48 {
+            sum = sum.plus(power.over(degree as f64));
+            power = power.times(square);
+            degree += 2;
+        }
+        sum
+    }
+
     pub(super) const fn negated(self) -> Self {
         Self { hi: -self.hi, lo: -self.lo }
     }

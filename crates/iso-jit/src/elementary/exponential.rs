@@ -21,6 +21,12 @@ const SIXTEENTHS: u32 = 48;
 /// so that adding a number of steps there also doubles it once every sixteen.
 pub(super) static POWERS: Table<2> = powers();
 
+/// The entry nearest to an argument, in the lowest bits of a word.
+#[inline(always)]
+pub(super) fn index(x: f64) -> u64 {
+    nearest_multiple(x, STEPS_PER_UNIT).1
+}
+
 /// The exponential of x = k·ln 2/16 + r, with r at most ln 2/32 < 2⁻⁵·⁵, from the entry at k mod 16: T·e^r with T = 2^(k/16). The
 /// part m that is missing in T counts as one of r.
 ///
@@ -67,5 +73,5 @@ const fn powers() -> Table<2> {
         columns[1][step] = lo / hi;
         step += 1;
     }
-    Table { columns, steps_per_unit: STEPS_PER_UNIT }
+    Table { columns }
 }

@@ -14,6 +14,12 @@ const LARGEST: f64 = 25_000.0;
 /// Sine and cosine at every step of a quarter, each as hi and lo.
 pub(super) static WAVE: Table<4> = wave();
 
+/// The entry nearest to an argument, in the lowest bits of a word.
+#[inline(always)]
+pub(super) fn index(x: f64) -> u64 {
+    nearest_multiple(x, STEPS_PER_RADIAN).1
+}
+
 /// The sine of x + quarters·π/2.
 #[inline(always)]
 pub(super) fn sin(x: f64, entry: [f64; 4], quarters: u64) -> Approximation {
@@ -112,5 +118,5 @@ const fn wave() -> Table<4> {
         [columns[2][step], columns[3][step]] = [cosine.hi, cosine.lo];
         step += 1;
     }
-    Table { columns, steps_per_unit: STEPS_PER_RADIAN }
+    Table { columns }
 }

@@ -5,19 +5,19 @@ use std::f64::consts::{LN_2, PI};
 use iso_expr::Operation;
 use iso_expr::random::Random;
 
-use super::{Approximation, ENTRIES, Table, WIDTH, exponential, nearest_multiple, scalar, sine, x86};
+use super::{Approximation, ENTRIES, Table, WIDTH, exponential, logarithm, scalar, sine, x86};
 
 type Approximate = fn(f64) -> Approximation;
 
-const FUNCTIONS: [(Operation, Approximate); 3] = [
-    (Operation::Exp, |x| exponential::exp(x, entry(&exponential::POWERS, x))),
-    (Operation::Sin, |x| sine::sin(x, entry(&sine::WAVE, x), 0)),
-    (Operation::Cos, |x| sine::sin(x, entry(&sine::WAVE, x), 1)),
+const FUNCTIONS: [(Operation, Approximate); 4] = [
+    (Operation::Exp, |x| exponential::exp(x, entry(&exponential::POWERS, exponential::index(x)))),
+    (Operation::Ln, |x| logarithm::ln(x, entry(&logarithm::LOGARITHMS, logarithm::index(x)))),
+    (Operation::Sin, |x| sine::sin(x, entry(&sine::WAVE, sine::index(x)), 0)),
+    (Operation::Cos, |x| sine::sin(x, entry(&sine::WAVE, sine::index(x)), 1)),
 ];
 
-/// The entry nearest to an argument.
-fn entry<const COLUMNS: usize>(table: &Table<COLUMNS>, x: f64) -> [f64; COLUMNS] {
-    let (_, index) = nearest_multiple(x, table.steps_per_unit);
+/// The entry with this index.
+fn entry<const COLUMNS: usize>(table: &Table<COLUMNS>, index: u64) -> [f64; COLUMNS] {
     table.columns.map(|column| column[index as usize % ENTRIES])
 }
 
@@ -25,10 +25,10 @@ fn entry<const COLUMNS: usize>(table: &Table<COLUMNS>, x: f64) -> [f64; COLUMNS]
 const BORDERS: [f64; 6] = [-746.0, -745.13, -708.4, -690.0, 690.0, 709.78];
 
 /// An argument of any kind: spread over an interval or over magnitudes, next to a multiple of half the tables' steps,
-/// next to a border, short, or special.
+/// next to a border or to one, short, or special.
 fn argument(random: &mut Random) -> f64 {
     let uniform = |random: &mut Random| random.below(1 << 53) as f64 / (1u64 << 53) as f64;
-    match random.below(8) {
+    match random.below(10) {
         0 => random.double(),
         1 => 60_000.0 * (uniform(random) - 0.5),
         2 => 2f64.powi(-(random.below(100) as i32)) * uniform(random),
@@ -38,6 +38,8 @@ fn argument(random: &mut Random) -> f64 {
         }
         4 => f64::from_bits(uniform(random).to_bits() & !0 << random.below(52)),
         5 => BORDERS[random.below(BORDERS.len())] + 0.1 * (uniform(random) - 0.5),
+        6 => 1.0 + 2f64.powi(-(random.below(60) as i32)) * (uniform(random) - 0.5),
+        7 => f64::from_bits(uniform(random).to_bits() + ((random.below(1000) as u64) << 52)),
         _ => 20.0 * (uniform(random) - 0.5),
     }
 }

@@ -6,7 +6,8 @@ use std::mem::transmute;
 use iso_expr::Operation;
 
 use super::{
-    Approximation, Bounds, Column, ENTRIES, InPlace, InPlaceOfBoth, Table, WIDTH, exponential, scalar, sine,
+    Approximation, Bounds, Column, ENTRIES, InPlace, InPlaceOfBoth, Table, WIDTH, exponential, logarithm,
+    scalar, sine,
 };
 
 /// The versions of a function that this processor runs, the fastest first.
@@ -40,6 +41,7 @@ macro_rules! compiled_for {
             pub(super) fn function(operation: Operation) -> Option<InPlace> {
                 match operation {
                     Operation::Exp => Some(exp),
+                    Operation::Ln => Some(ln),
                     Operation::Sin => Some(sin),
                     Operation::Cos => Some(cos),
                     _ => None,
@@ -50,7 +52,28 @@ macro_rules! compiled_for {
             extern "C" fn exp(places: &mut [f64; WIDTH]) {
                 let look_up = |column: &Column, indices: &[u64; WIDTH]| $look_up(column, indices);
                 let approximate = |_, x, entry| exponential::exp(x, entry);
-                round(places, &exponential::POWERS, look_up, approximate, [Operation::Exp; 2]);
+                round(
+                    places,
+                    &exponential::POWERS,
+                    exponential::index,
+                    look_up,
+                    approximate,
+                    [Operation::Exp; 2],
+                );
+            }
+
+            #[target_feature(enable = $features)]
+            extern "C" fn ln(places: &mut [f64; WIDTH]) {
+                let look_up = |column: &Column, indices: &[u64; WIDTH]| $look_up(column, indices);
+                let approximate = |_, x, entry| logarithm::ln(x, entry);
+                round(
+                    places,
+                    &logarithm::LOGARITHMS,
+                    logarithm::index,
+                    look_up,
+                    approximate,
+                    [Operation::Ln; 2],
+                );
             }
 
             #[target_feature(enable = $features)]
@@ -75,14 +98,14 @@ macro_rules! compiled_for {
             fn waves(places: &mut [f64; WIDTH], quarters: impl Fn(usize) -> u64, operations: [Operation; 2]) {
                 let look_up = |column: &Column, indices: &[u64; WIDTH]| $look_up(column, indices);
                 let approximate = |lane, x, entry| sine::sin(x, entry, quarters(lane));
-                round(places, &sine::WAVE, look_up, approximate, operations);
+                round(places, &sine::WAVE, sine::index, look_up, approximate, operations);
             }
 
             #[target_feature(enable = $features)]
             pub(super) extern "C" fn both_of_eight([sines, cosines]: &mut [[f64; WIDTH]; 2]) {
                 let arguments = in_pairs(sines);
                 let look_up = |column: &Column, indices: &[u64; WIDTH]| $look_up(column, indices);
-                let entries = sine::WAVE.entries(&arguments, look_up);
+                let entries = sine::WAVE.entries(&arguments, sine::index, look_up);
                 let (mut of_sines, mut of_cosines) = ([[0.0; WIDTH]; 2], [[0.0; WIDTH]; 2]);
                 for (lane, argument) in arguments.iter().enumerate() {
                     let [sine, cosine] =
@@ -107,12 +130,13 @@ compiled_for!(avx2, "avx2,fma", indexed);
 fn round<const COLUMNS: usize>(
     places: &mut [f64; WIDTH],
     table: &Table<COLUMNS>,
+    index: impl Fn(f64) -> u64,
     look_up: impl Fn(&Column, &[u64; WIDTH]) -> [f64; WIDTH],
     approximate: impl Fn(usize, f64, [f64; COLUMNS]) -> Approximation,
     operations: [Operation; 2],
 ) {
     let arguments = in_pairs(places);
-    let entries = table.entries(&arguments, look_up);
+    let entries = table.entries(&arguments, index, look_up);
     let mut bounds = [[0.0; WIDTH]; 2];
     for (lane, argument) in arguments.iter().enumerate() {
         let entry = std::array::from_fn(|column| entries[column][lane]);
