@@ -125,7 +125,7 @@ pub(crate) fn equal(a: Decorated, b: Decorated) -> Decorated {
 /// b where the condition a is not zero, c where it is.
 ///
 /// Where the condition is certain, only the branch taken counts: a jump of the condition between nonzero values does
-/// not show.
+/// not show. But unless the condition is [`Decoration::Common`] it may be another one right beside the box.
 #[inline]
 pub(crate) fn select(a: Decorated, b: Decorated, c: Decorated) -> Decorated {
     let condition = a.interval;
@@ -140,5 +140,10 @@ pub(crate) fn select(a: Decorated, b: Decorated, c: Decorated) -> Decorated {
         let interval = b.interval.hull(c.interval);
         Decorated { interval, decoration: b.decoration.min(c.decoration).min(Decoration::Defined) }
     };
-    enclosure.trivial_unless(a.decoration >= Decoration::Defined)
+    let limit = match a.decoration {
+        Decoration::Common => Decoration::Common,
+        Decoration::Continuous | Decoration::Defined => Decoration::Continuous,
+        Decoration::Trivial => Decoration::Trivial,
+    };
+    enclosure.at_most(limit)
 }

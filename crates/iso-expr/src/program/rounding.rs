@@ -40,8 +40,8 @@ impl Program {
         for (index, node) in self.nodes.iter().enumerate().rev() {
             let Some(slope) = slopes[index] else { continue };
             if let Some(rounding) = program.rounding(node, places[index]) {
-                let term = match program.node(slope) {
-                    Node::Apply(Operation::Divide, [numerator, sum, _])
+                let term = match (node, program.node(slope)) {
+                    (Node::Apply(..), Node::Apply(Operation::Divide, [numerator, sum, _]))
                         if program.is_part_of_exponentials(places[index], sum) =>
                     {
                         program.rounding_in_sum(numerator, sum)
@@ -119,8 +119,8 @@ impl Program {
         }
     }
 
-    /// The same of what is a part of `sum`, which has positive terms, times |numerator / sum|, a slope: the part is no larger than the sum,
-    /// which a quotient of enclosures does not show, and of sums of exponentials over large boxes far from it.
+    /// The same of an operation whose result is a part of `sum`, which has positive terms, times |numerator / sum|, a slope: the part is no
+    /// larger than the sum, which a quotient of enclosures does not show, and of sums of exponentials over large boxes far from it.
     fn rounding_in_sum(&mut self, numerator: NodeId, sum: NodeId) -> NodeId {
         let [one, least] = [1.0, f64::MIN_POSITIVE].map(|value| self.literal(value));
         let below = self.apply(Operation::Divide, &[least, sum]);

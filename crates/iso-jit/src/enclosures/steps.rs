@@ -89,8 +89,8 @@ fn select(writer: &mut Writer<'_, '_>, a: Enclosure, b: Enclosure, c: Enclosure)
     emptied(writer, empty, chosen)
 }
 
-/// What is known of a choice: no more than that it is defined where the condition is not certain, and nothing where the condition
-/// may be undefined.
+/// What is known of a choice: no more than that it is defined where the condition is not certain, that it is continuous on the box where
+/// the condition may be another one beside it, and nothing where the condition may be undefined.
 fn known_of_choice(
     writer: &mut Writer<'_, '_>,
     [a, b, c]: [Enclosure; 3],
@@ -102,9 +102,11 @@ fn known_of_choice(
     let [of_b, of_c] = [b, c].map(|branch| branch.known(writer));
     let uncertain = writer.builder.ins().band(of_both, defined);
     let unless_b = writer.builder.ins().bitselect(takes_c.0, of_c, uncertain);
-    let known = writer.builder.ins().bitselect(may_be_zero.0, unless_b, of_b);
-    let Some(of_condition) = a.known else { return known };
-    let zero = writer.integers(0);
+    let of_chosen = writer.builder.ins().bitselect(may_be_zero.0, unless_b, of_b);
+    let Some(of_condition) = a.known else { return of_chosen };
+    let [zero, continuous] = [0, known(Decoration::Continuous)].map(|bits| writer.integers(bits));
     let undefined = writer.builder.ins().icmp(IntCC::Equal, of_condition, zero);
-    writer.builder.ins().band_not(known, undefined)
+    let limit = writer.builder.ins().bor(of_condition, continuous);
+    let limited = writer.builder.ins().band(of_chosen, limit);
+    writer.builder.ins().band_not(limited, undefined)
 }

@@ -264,10 +264,12 @@ fn every_operation_has_a_known_case() {
 }
 
 #[test]
-fn a_condition_need_not_be_continuous_but_must_be_defined() {
+fn a_condition_must_be_defined_and_is_known_beside_the_box_where_it_is_common() {
     let condition = |decoration| Decorated { interval: Interval { lo: 1.0, hi: 2.0 }, decoration };
     let branch = Decorated::argument(3.0, 4.0);
     let select = |decoration| extend(Operation::Select, [condition(decoration), branch, branch]).decoration;
-    assert_eq!(select(Decoration::Defined), Decoration::Common);
+    assert_eq!(select(Decoration::Common), Decoration::Common);
+    assert_eq!(select(Decoration::Continuous), Decoration::Continuous);
+    assert_eq!(select(Decoration::Defined), Decoration::Continuous);
     assert_eq!(select(Decoration::Trivial), Decoration::Trivial);
 }

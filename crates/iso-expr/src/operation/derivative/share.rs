@@ -8,7 +8,7 @@
 use super::Chain;
 use crate::{Node, NodeId, Operation, Program};
 
-/// Sums of more terms are differentiated like anything else.
+/// Sums of more terms, and sums of more multiples of them, are differentiated like anything else.
 const MOST_TERMS: usize = 64;
 
 /// Of more terms shares are quotients.
@@ -95,29 +95,25 @@ impl Chain<'_> {
         self.product(exponential, Some(derivative))
     }
 
-    /// A sum of multiples of the exponentials over their sum, term by term. It is a mean of what they are multiplied by. If quotients by
-    /// the sum do not tell, it is bounded by the least and the greatest of that.
+    /// A sum of multiples of the exponentials over their sum, exponential by exponential. It is a mean of what they are multiplied by. If
+    /// quotients by the sum do not tell, it is bounded by the least and the greatest of that.
     fn distributed(&mut self, derivative: NodeId, sum: NodeId, exponentials: &Exponentials) -> NodeId {
-        let (mut total, mut terms) = (None, vec![derivative]);
-        let mut factors = Vec::new();
-        while let Some(term) = terms.pop() {
-            if let Node::Apply(Operation::Add, [a, b, _]) = self.program.node(term) {
-                terms.extend([b, a]);
-                continue;
-            }
-            let Some((factor, exponential)) = self.multiple(term, &exponentials.terms) else {
-                return self.apply(Operation::Divide, &[derivative, sum]);
-            };
+        let Some(factors) = self.factors(derivative, &exponentials.terms) else {
+            return self.apply(Operation::Divide, &[derivative, sum]);
+        };
+        let mut total = None;
+        for &(exponential, factor) in &factors {
             let share = self.share(exponential, sum, exponentials);
             let part = self.product(share, Some(factor));
             total = self.sum(total, part);
-            factors.push(factor);
         }
         let total = total.expect("a sum has terms");
         if exponentials.are_paired() {
             return total;
         }
-        if factors.len() < exponentials.count() {
+        let is_whole = factors.len() == exponentials.count();
+        let mut factors: Vec<_> = factors.into_iter().map(|(_, factor)| factor).collect();
+        if !is_whole {
             factors.push(self.literal(0.0));
         }
         let mut extreme = |operation| {
@@ -129,6 +125,29 @@ impl Chain<'_> {
         let (least, greatest) = (extreme(Operation::Minimum), extreme(Operation::Maximum));
         let total = self.apply(Operation::Maximum, &[total, least]);
         self.apply(Operation::Minimum, &[total, greatest])
+    }
+
+    /// Each of the exponentials with what it is multiplied by in a derivative, if that is a sum of such products and not of too many:
+    /// a sum that is shared within itself would have far more terms than nodes.
+    fn factors(&mut self, derivative: NodeId, exponentials: &[NodeId]) -> Option<Vec<(NodeId, NodeId)>> {
+        let mut factors: Vec<(NodeId, NodeId)> = Vec::new();
+        let (mut ahead, mut count) = (vec![derivative], 0);
+        while let Some(term) = ahead.pop() {
+            if let Node::Apply(Operation::Add, [a, b, _]) = self.program.node(term) {
+                ahead.extend([b, a]);
+                continue;
+            }
+            count += 1;
+            if count > MOST_TERMS {
+                return None;
+            }
+            let (factor, exponential) = self.multiple(term, exponentials)?;
+            match factors.iter_mut().find(|(other, _)| *other == exponential) {
+                Some((_, sum)) => *sum = self.apply(Operation::Add, &[*sum, factor]),
+                None => factors.push((exponential, factor)),
+            }
+        }
+        Some(factors)
     }
 
     /// The exponential of which `term` is a multiple, as [`Chain::product`] writes products, and what it is multiplied by.
