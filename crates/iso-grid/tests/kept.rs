@@ -46,7 +46,6 @@ fn a_moved_camera_spares_what_is_proven_of_cells() {
             assert_eq!(anew, again, "{formula}");
             let saved = from_nothing.box_evaluations - spared.box_evaluations;
             assert!(saved > from_nothing.box_evaluations / 20, "{formula}: {saved} of {from_nothing:?}");
-            assert!(first.box_evaluations > 0);
         }
         // All that the first picture found out of cells is known now.
         let (_, same_view) = follow(&kept, region, &rays(0));

@@ -113,6 +113,7 @@ fn the_number_of_threads_changes_no_bit() {
         three.depth.iter().map(|t| t.to_bits()).collect::<Vec<_>>()
     );
     assert_eq!(one.counts, three.counts);
+    assert_eq!(one.outcomes, three.outcomes);
 }
 
 /// The picture is the right way up: the key light comes from the upper left.

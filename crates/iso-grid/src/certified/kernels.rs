@@ -241,6 +241,12 @@ impl Kernels {
         Some((*extreme, faces.iter().map(kernels).collect()))
     }
 
+    /// Whether these are others of the same function on the same box. Threads may find out the same.
+    pub(super) fn are(&self, others: &Self) -> bool {
+        let is_same = || Arc::ptr_eq(&self.formula, &others.formula) || self.program() == others.program();
+        self.domain == others.domain && is_same()
+    }
+
     /// Whether there is anything that a box may decide.
     pub(super) fn may_be_shortened(&self) -> bool {
         self.formula.has_branches

@@ -121,11 +121,11 @@ impl Places {
             if outer.may_be_shortened() { outer.shortened(&self.formulas, self.bounds(place)) } else { None };
         let found = shortened.map_or(outer, Arc::new);
         // Without room it is found out anew each time: no result depends on what is kept.
-        if self.formulas.have_room() {
-            let mut known = self.known.write().expect("no thread panics while it holds the map");
-            known.insert(place, Arc::clone(&found));
+        if !self.formulas.have_room() {
+            return found;
         }
-        found
+        let mut known = self.known.write().expect("no thread panics while it holds the map");
+        Arc::clone(known.entry(place).or_insert(found))
     }
 
     /// The box of a place, with a margin.
@@ -137,5 +137,46 @@ impl Places {
             let margin = MARGIN * (step[axis] + lo.abs().max(hi.abs()));
             Interval { lo: lo - margin, hi: hi + margin }
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use iso_expr::{Ast, Interpreter};
+
+    use super::*;
+    use crate::Surface;
+
+    /// Two balls beside each other: in places of one, the other is left out.
+    fn kernels() -> Arc<Kernels> {
+        let formula = "min((x - 1)^2 + y^2 + z^2, (x + 1)^2 + y^2 + z^2) - 0.2";
+        let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
+        Arc::new(Kernels::of(&Surface::new(Arc::new(Interpreter), program)).unwrap())
+    }
+
+    fn places() -> Places {
+        Places::new(&kernels(), &Region::new(DVec3::splat(-2.0), DVec3::splat(2.0)).unwrap())
+    }
+
+    /// As when two threads come to a place at once.
+    #[test]
+    fn what_is_found_out_twice_is_kept_once() {
+        let places = places();
+        let place = places.around(DVec3::new(1.1, -0.1, -0.1), DVec3::new(1.2, 0.1, 0.1));
+        let [first, second] = [(); 2].map(|()| places.find_out(place, Arc::clone(&places.whole)));
+        assert!(first.program().operations() < places.whole.program().operations());
+        assert!(Arc::ptr_eq(&first, &second));
+        assert!(Arc::ptr_eq(&first, &places.at(place)));
+    }
+
+    #[test]
+    fn kernels_found_out_anew_are_known_again() {
+        let (places, elsewhere) = (places(), places());
+        let at =
+            |places: &Places, x: f64| places.kernels(DVec3::new(x, 0.0, 0.0), DVec3::new(x + 0.1, 0.1, 0.1));
+        assert!(at(&places, 1.1).are(&at(&elsewhere, 1.1)));
+        assert!(!at(&places, 1.1).are(&at(&elsewhere, -1.1)));
+        let (_, faces) = places.faces(&places.whole).unwrap();
+        assert!(faces.iter().all(|face| !face.are(&places.whole)));
     }
 }

@@ -1,7 +1,6 @@
 //! Slabs: stretches of beams in boxes, and which of them may hold roots.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use glam::DVec3;
 use iso_expr::Interval;
@@ -109,7 +108,7 @@ impl Subdivision<'_> {
         }
         let found = self.certified.places.kernels(lo, hi);
         let known = [0, around, self.kernels.len() as u32 - 1];
-        let known = known.into_iter().find(|number| Arc::ptr_eq(self.kernels(*number), &found));
+        let known = known.into_iter().find(|number| self.kernels(*number).are(&found));
         known.unwrap_or_else(|| self.number_of(found))
     }
 
