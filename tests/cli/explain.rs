@@ -74,6 +74,14 @@ fn sections_can_be_chosen() {
 }
 
 /// The hint is said, and what is computed stays what was written.
+/// A listing has its limit, which is no reason to show nothing else.
+#[test]
+fn what_is_too_large_for_a_listing_is_explained_nevertheless() {
+    let formula = (1..700).map(|k| format!("{k}*(x+{k})*(y-{k})*z")).collect::<Vec<_>>().join("+");
+    let text = Case::new().run(&["explain", &formula, "--kernel", "boxes"]).exits(0).stdout();
+    assert!(text.contains("plan: ") && text.contains("the jit engine allows 3000"), "{text}");
+}
+
 #[test]
 fn better_forms_are_named_but_not_used() {
     let case = Case::new();

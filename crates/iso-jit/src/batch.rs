@@ -3,7 +3,7 @@
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{AbiParam, InstBuilder, Signature, Value, types};
 use cranelift_frontend::FunctionBuilder;
-use iso_expr::{Argument, BatchKernel, Node, Operation, Program, Scratch};
+use iso_expr::{Argument, BatchKernel, Node, Program, Scratch};
 
 use crate::code::{Blueprint, Compiled};
 use crate::elementary;
@@ -230,7 +230,7 @@ fn most_alive(program: &Program) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use iso_expr::Ast;
+    use iso_expr::{Ast, Operation};
 
     use super::*;
 

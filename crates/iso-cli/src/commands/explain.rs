@@ -20,10 +20,8 @@ use crate::plan::{PlanReport, plan};
 
 /// Shows the plan of a picture and the stages of its formula.
 pub(crate) fn run(flags: ExplainFlags) -> Result<(), Failure> {
-    let wanted =
-        |section: &Section| flags.sections.sections.is_empty() || flags.sections.sections.contains(section);
     let sections = sections(&flags)?;
-    let shown = || sections.iter().filter(|(section, _)| wanted(section));
+    let shown = || sections.iter().filter(|(section, _)| flags.shows(*section));
     to_standard_output(|writer| {
         if flags.sections.json {
             let object: Map<String, Value> = shown()
@@ -37,6 +35,14 @@ pub(crate) fn run(flags: ExplainFlags) -> Result<(), Failure> {
             Shown::Stage(stage) => stage.write(writer, &section.name()),
         })
     })
+}
+
+impl ExplainFlags {
+    /// Whether a section is asked for: all are unless some are named.
+    fn shows(&self, section: Section) -> bool {
+        let named = &self.sections.sections;
+        named.is_empty() || named.contains(&section)
+    }
 }
 
 impl Section {
@@ -118,10 +124,11 @@ fn sections(flags: &ExplainFlags) -> Result<Vec<(Section, Shown)>, Failure> {
     Ok([(Section::Plan, Shown::Plan(plan))].into_iter().chain(stages).collect())
 }
 
-/// What becomes of a program on the way to native code.
+/// What becomes of a program on the way to native code, if that is asked for.
 #[cfg(feature = "jit")]
 fn native_stages(flags: &ExplainFlags, program: &Program) -> Result<Vec<(Section, Stage)>, Failure> {
     use crate::flags::KernelName;
+    use iso_expr::CompileError;
     use iso_jit::{Jit, Kind};
 
     let kind = match flags.sections.kernel {
@@ -129,7 +136,16 @@ fn native_stages(flags: &ExplainFlags, program: &Program) -> Result<Vec<(Section
         KernelName::Batch => Kind::Batch,
         KernelName::Boxes => Kind::Boxes,
     };
-    let listing = Jit::new()?.listing(program, kind)?;
+    if ![Section::Clif, Section::Assembly].into_iter().any(|section| flags.shows(section)) {
+        return Ok(Vec::new());
+    }
+    let listing = match Jit::new()?.listing(program, kind) {
+        Err(refusal @ CompileError::TooLarge { .. }) => {
+            let refused = |unit| Stage::new(0, unit, Duration::ZERO, refusal.to_string());
+            return Ok(vec![(Section::Clif, refused("lines")), (Section::Assembly, refused("bytes"))]);
+        }
+        listing => listing?,
+    };
     let clif = Stage::new(listing.clif.lines().count(), "lines", listing.compile_time, listing.clif);
     let assembly = Stage::new(listing.code_bytes, "bytes", listing.compile_time, listing.assembly);
     Ok(vec![(Section::Clif, clif), (Section::Assembly, assembly)])

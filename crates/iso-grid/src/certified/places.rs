@@ -149,7 +149,7 @@ mod tests {
 
     /// Two balls beside each other: in places of one, the other is left out.
     fn kernels() -> Arc<Kernels> {
-        let formula = "min((x - 1)^2 + y^2 + z^2, (x + 1)^2 + y^2 + z^2) - 0.2";
+        let formula = "min((x - 1)^2 + y^2 + z^2 - 0.2, (x + 1)^2 + y^2 + z^2 - 0.2)";
         let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
         Arc::new(Kernels::of(&Surface::new(Arc::new(Interpreter), program)).unwrap())
     }
