@@ -1,7 +1,9 @@
 //! The method of intersection and the region, from flags.
 
 use iso_expr::CompileError;
-use iso_grid::{Certified, GridSettings, Method, Region, RootFinder, RootFinding, Surface, Workspace};
+use iso_grid::{
+    Certified, Fitted, GridSettings, Method, Region, RootFinder, RootFinding, Surface, Workspace,
+};
 
 use crate::failure::Failure;
 use crate::flags::{MethodFlags, MethodName};
@@ -51,7 +53,7 @@ pub(crate) fn method(flags: &MethodFlags) -> Result<Method, Failure> {
 
 /// The region that was asked for, else one that fits the surface.
 pub(crate) fn region(given: Option<Region>, surface: &Surface) -> Result<Region, CompileError> {
-    given.map_or_else(|| Region::fitted(surface, &mut Workspace::default()), Ok)
+    given.map_or_else(|| Ok(Fitted::around(surface, &mut Workspace::default())?.region), Ok)
 }
 
 /// The paper's settings, but for what `flags` say.

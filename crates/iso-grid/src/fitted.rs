@@ -2,12 +2,24 @@
 
 use glam::{DVec3, IVec3};
 use iso_expr::engine::{Boxes, Enclosures};
-use iso_expr::{BoxKernel, CompileError, Decoration};
+use iso_expr::{BoxKernel, CompileError, Decorated, Decoration, Interval};
 
 use crate::{Region, Surface, Workspace};
 
 /// Half the sides of the cubes around the origin in which the surface is looked for, one after the other.
 const HALF_SIDES: [f64; 5] = [2.0, 8.0, 32.0, 128.0, 512.0];
+
+/// Those in which it is looked for if nothing is found in them.
+const FARTHER: [f64; 6] = [2048.0, 8192.0, 32_768.0, 131_072.0, 524_288.0, 2_097_152.0];
+
+/// Cells of a cube along each axis that lie in the middle, where the cube before it lies.
+const MIDDLE: std::ops::Range<i32> = 6..10;
+
+/// Cells that may hold the surface are cut in halves this often to prove that they do,
+const HALVINGS_TO_PROVE: u32 = 5;
+
+/// as long as there are no more of them.
+const MOST_TO_PROVE: usize = 1000;
 
 /// A region is cut in halves this often along each axis: 16 cells.
 const HALVINGS: u32 = 4;
@@ -21,44 +33,78 @@ const ROUNDS: usize = 12;
 /// No side is drawn closer than this part of the longest one, so that flat surfaces keep some space around them.
 const THINNEST: f64 = 0.25;
 
-impl Region {
-    /// The cube from −2 to 2, which shows something of most surfaces that go on for ever.
-    pub fn standard() -> Self {
-        cube(HALF_SIDES[0])
-    }
+/// A region that was drawn around a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fitted {
+    /// The region.
+    pub region: Region,
+    /// Whether the surface certainly has points outside of it.
+    pub goes_on: bool,
+}
 
+/// What may be seen of the surface in a cube.
+struct Glimpse {
+    /// The box around it.
+    held: Region,
+    /// On how many axes it meets faces of the cube.
+    axes_met: usize,
+    /// Whether it is cut off, and nothing of it is in the middle of the cube.
+    is_scrap: bool,
+}
+
+impl Glimpse {
+    /// Lower where more of the surface is to be expected.
+    fn rank(&self) -> (bool, usize) {
+        (self.is_scrap, self.axes_met)
+    }
+}
+
+impl Fitted {
     /// A region close around the surface, or around a part of it near the origin.
     ///
     /// The surface is looked for in growing cubes around the origin, in cells that intervals cannot prove empty. The
-    /// region is drawn around it in the first cube whose faces it does not meet. If there is none, that cube is taken where
-    /// it meets the faces of the fewest axes, and [`Region::standard`] where nothing is found at all. What lies outside of
-    /// the cube that was taken is not looked at; inside it, nothing of the surface is left out.
+    /// region is drawn around it in the first cube whose faces it does not meet, or in a larger one if that is proven to hold more of it
+    /// and its faces are not met either. If there is none, that cube is taken where it meets the faces of the fewest axes, and
+    /// [`Region::standard`] where nothing is found at all. Inside the cube that was taken nothing of the surface is left out. It is looked
+    /// for up to 512 from the origin, or up to 2²¹ if it is nowhere nearer.
     ///
     /// When the surface's [`Stop`](crate::Stop) is requested, any region.
     ///
     /// # Errors
     /// When the engine cannot compile the surface.
-    pub fn fitted(surface: &Surface, workspace: &mut Workspace) -> Result<Self, CompileError> {
+    pub fn around(surface: &Surface, workspace: &mut Workspace) -> Result<Self, CompileError> {
         let kernel = &**surface.value_enclosures()?;
-        let mut best: Option<(usize, Self)> = None;
-        for cube in HALF_SIDES.map(cube) {
-            if surface.stop().is_requested() {
+        let is_stopped = || surface.stop().is_requested();
+        let mut best: Option<Glimpse> = None;
+        let mut goes_on = false;
+        for (number, half_side) in HALF_SIDES.into_iter().chain(FARTHER).enumerate() {
+            if is_stopped() || best.is_some() && number >= HALF_SIDES.len() {
                 break;
             }
-            let Some(held) = cube.drawn_in(kernel, workspace) else { continue };
-            let meets =
-                (0..3).filter(|&axis| held.min[axis] == cube.min[axis] || held.max[axis] == cube.max[axis]);
-            let axes_met = meets.count();
-            if best.is_none_or(|(fewest, _)| axes_met < fewest) {
-                best = Some((axes_met, held));
-            }
-            if axes_met == 0 {
-                break;
+            let cube = cube(half_side);
+            let mut cells = cube.open_cells(kernel, workspace);
+            let Some(found) = cube.glimpse(&cells) else { continue };
+            let Some(known) = &best else {
+                best = Some(found);
+                continue;
+            };
+            let is_whole = known.axes_met == 0;
+            let is_better = if is_whole { found.axes_met == 0 } else { found.rank() < known.rank() };
+            let mut has_more = || {
+                cells.retain(|cell| cell.to_array().iter().any(|along| !MIDDLE.contains(along)));
+                cube.is_crossed(std::mem::take(&mut cells), kernel, workspace)
+            };
+            if is_better && (!is_whole || has_more()) {
+                (best, goes_on) = (Some(found), false);
+            } else if !is_better && !goes_on {
+                goes_on = has_more();
             }
         }
-        let Some((_, mut region)) = best else { return Ok(Self::standard()) };
+        let Some(Glimpse { held: mut region, .. }) = best else {
+            return Ok(Self { region: Region::standard(), goes_on: false });
+        };
         for _ in 0..ROUNDS {
-            if surface.stop().is_requested() {
+            if is_stopped() {
                 break;
             }
             let Some(closer) = region.drawn_in(kernel, workspace) else { break };
@@ -68,22 +114,86 @@ impl Region {
                 break;
             }
         }
-        Ok(region)
+        Ok(Self { region, goes_on })
+    }
+}
+
+impl Region {
+    /// The cube from −2 to 2, which shows something of most surfaces that go on for ever.
+    pub fn standard() -> Self {
+        cube(HALF_SIDES[0])
+    }
+
+    /// Whether some of the surface may be in the region; if not, that is proven.
+    ///
+    /// # Errors
+    /// When the engine cannot compile the surface.
+    pub fn may_hold(&self, surface: &Surface, workspace: &mut Workspace) -> Result<bool, CompileError> {
+        Ok(!self.open_cells(&**surface.value_enclosures()?, workspace).is_empty())
+    }
+
+    /// The cells, sixteen along each axis, that may hold the surface.
+    fn open_cells(&self, kernel: &dyn BoxKernel, workspace: &mut Workspace) -> Vec<IVec3> {
+        (1..=HALVINGS).fold(vec![IVec3::ZERO], |cells, depth| {
+            self.not_empty(halved(&cells), 1 << depth, kernel, workspace)
+        })
     }
 
     /// The box around the cells of the region that may hold the surface, but not too thin; `None` when none may.
     fn drawn_in(self, kernel: &dyn BoxKernel, workspace: &mut Workspace) -> Option<Self> {
-        let mut cells = vec![IVec3::ZERO];
-        for depth in 1..=HALVINGS {
-            let halves: Vec<IVec3> =
-                cells.iter().flat_map(|cell| OCTANTS.map(|octant| 2 * cell + octant)).collect();
-            cells = self.not_empty(halves, 1 << depth, kernel, workspace);
-        }
+        self.around(&self.open_cells(kernel, workspace))
+    }
+
+    /// The box around some of sixteen cells along each axis, but not too thin; `None` when there are none.
+    fn around(&self, cells: &[IVec3]) -> Option<Self> {
         let first = cells.iter().copied().reduce(IVec3::min)?;
         let last = cells.iter().copied().reduce(IVec3::max)?;
         let (min, max) = (self.corner(first, 1 << HALVINGS), self.corner(last + 1, 1 << HALVINGS));
         let spare = 0.5 * (DVec3::splat(THINNEST * (max - min).max_element()) - (max - min)).max(DVec3::ZERO);
         Some(Self { min: (min - spare).max(self.min), max: (max + spare).min(self.max) })
+    }
+
+    /// What may be seen in cells of this cube.
+    fn glimpse(&self, cells: &[IVec3]) -> Option<Glimpse> {
+        let held = self.around(cells)?;
+        let is_met = |&axis: &usize| held.min[axis] == self.min[axis] || held.max[axis] == self.max[axis];
+        let axes_met = (0..3).filter(is_met).count();
+        let (least, most) = (1 << (HALVINGS - 2), 3 << (HALVINGS - 2));
+        let is_in_middle = |cell: &IVec3| cell.to_array().iter().all(|along| (least..most).contains(along));
+        Some(Glimpse { held, axes_met, is_scrap: axes_met > 0 && !cells.iter().any(is_in_middle) })
+    }
+
+    /// Whether the surface certainly has points in some of sixteen cells along each axis. If there are few, they are halved to find out.
+    fn is_crossed(&self, mut cells: Vec<IVec3>, kernel: &dyn BoxKernel, workspace: &mut Workspace) -> bool {
+        for depth in HALVINGS..=HALVINGS + HALVINGS_TO_PROVE {
+            if cells.chunks(64).any(|cells| self.changes_sign(cells, 1 << depth, kernel, workspace)) {
+                return true;
+            }
+            if cells.len() > MOST_TO_PROVE {
+                return false;
+            }
+            cells = self.not_empty(halved(&cells), 2 << depth, kernel, workspace);
+        }
+        false
+    }
+
+    /// Whether F, continuous on one of `cells`, of which `count` fill the region along each axis, has both signs at its corners.
+    fn changes_sign(
+        &self,
+        cells: &[IVec3],
+        count: i32,
+        kernel: &dyn BoxKernel,
+        workspace: &mut Workspace,
+    ) -> bool {
+        let whole = enclose(kernel, workspace, cells.iter().map(|&cell| self.cell(cell, count)));
+        let corners =
+            cells.iter().flat_map(|cell| OCTANTS.map(|octant| [self.corner(cell + octant, count); 2]));
+        let corners = enclose(kernel, workspace, corners);
+        whole.iter().zip(corners.chunks(OCTANTS.len())).any(|(whole, corners)| {
+            whole.decoration >= Decoration::Continuous
+                && corners.iter().any(|corner| corner.interval.hi < 0.0)
+                && corners.iter().any(|corner| corner.interval.lo > 0.0)
+        })
     }
 
     /// Those of `cells`, of which `count` fill the region along each axis, that may hold the surface.
@@ -94,23 +204,15 @@ impl Region {
         kernel: &dyn BoxKernel,
         workspace: &mut Workspace,
     ) -> Vec<IVec3> {
-        let ends = |far: i32| {
-            [0, 1, 2].map(|axis| {
-                cells.iter().map(|&cell| self.corner(cell + far, count)[axis]).collect::<Vec<_>>()
-            })
-        };
-        let (lo, hi) = (ends(0), ends(1));
-        let (mut below, mut above) = (vec![0.0; cells.len()], vec![0.0; cells.len()]);
-        let mut decoration = vec![Decoration::Trivial; cells.len()];
-        kernel.evaluate(
-            &mut workspace.scratch,
-            Boxes { lo: lo.each_ref().map(Vec::as_slice), hi: hi.each_ref().map(Vec::as_slice) },
-            Enclosures { lo: &mut below, hi: &mut above, decoration: &mut decoration },
-        );
-        workspace.counters.box_evaluations += cells.len() as u64;
-        let mut may_hold = below.iter().zip(&above).map(|(&lo, &hi)| lo <= 0.0 && 0.0 <= hi);
+        let found = enclose(kernel, workspace, cells.iter().map(|&cell| self.cell(cell, count)));
+        let mut may_hold = found.iter().map(|found| found.interval.contains_zero());
         cells.retain(|_| may_hold.next() == Some(true));
         cells
+    }
+
+    /// The corners of a cell.
+    fn cell(&self, cell: IVec3, count: i32) -> [DVec3; 2] {
+        [self.corner(cell, count), self.corner(cell + 1, count)]
     }
 
     /// The corner of a cell next to the region's least corner.
@@ -132,6 +234,35 @@ const OCTANTS: [IVec3; 8] = [
     IVec3::new(1, 1, 1),
 ];
 
+/// The eight cells that each cell is cut into.
+fn halved(cells: &[IVec3]) -> Vec<IVec3> {
+    cells.iter().flat_map(|cell| OCTANTS.map(|octant| 2 * cell + octant)).collect()
+}
+
+/// Encloses F over boxes with these corners.
+fn enclose(
+    kernel: &dyn BoxKernel,
+    workspace: &mut Workspace,
+    boxes: impl Iterator<Item = [DVec3; 2]> + Clone,
+) -> Vec<Decorated> {
+    let ends = |end: usize| {
+        [0, 1, 2].map(|axis| boxes.clone().map(|corners| corners[end][axis]).collect::<Vec<_>>())
+    };
+    let (lo, hi) = (ends(0), ends(1));
+    let count = lo[0].len();
+    let (mut below, mut above) = (vec![0.0; count], vec![0.0; count]);
+    let mut decorations = vec![Decoration::Trivial; count];
+    kernel.evaluate(
+        &mut workspace.scratch,
+        Boxes { lo: lo.each_ref().map(Vec::as_slice), hi: hi.each_ref().map(Vec::as_slice) },
+        Enclosures { lo: &mut below, hi: &mut above, decoration: &mut decorations },
+    );
+    workspace.counters.box_evaluations += count as u64;
+    let ends = below.into_iter().zip(above).map(|(lo, hi)| Interval { lo, hi });
+    let found = ends.zip(decorations);
+    found.map(|(interval, decoration)| Decorated { interval, decoration }).collect()
+}
+
 fn cube(half_side: f64) -> Region {
     Region { min: DVec3::splat(-half_side), max: DVec3::splat(half_side) }
 }
@@ -144,9 +275,13 @@ mod tests {
 
     use super::*;
 
-    fn fitted(formula: &str) -> Region {
+    fn around(formula: &str) -> Fitted {
         let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
-        Region::fitted(&Surface::new(Arc::new(Interpreter), program), &mut Workspace::default()).unwrap()
+        Fitted::around(&Surface::new(Arc::new(Interpreter), program), &mut Workspace::default()).unwrap()
+    }
+
+    fn fitted(formula: &str) -> Region {
+        around(formula).region
     }
 
     /// The region holds the box from `min` to `max`, and is no more than a tenth of its longest side larger.
@@ -169,6 +304,44 @@ mod tests {
         }
         let ellipsoid = "(x - 5)^2 + (y/2)^2 + (z + 1)^2 = 1";
         assert_close(ellipsoid, DVec3::new(4.0, -2.0, -2.0), DVec3::new(6.0, 2.0, 0.0));
+    }
+
+    #[test]
+    fn parts_apart_from_each_other_are_framed_together() {
+        let two = "min(x^2 + y^2 + z^2 - 1, (x - 10)^2 + y^2 + z^2 - 1)";
+        assert_close(two, DVec3::splat(-1.0), DVec3::new(11.0, 1.0, 1.0));
+        let small = "(x^2 + y^2 + z^2 - 1)*((x - 3)^2 + y^2 + z^2 - 0.25)";
+        assert_close(small, DVec3::splat(-1.0), DVec3::new(3.5, 1.0, 1.0));
+        assert!(!around(two).goes_on && !around(small).goes_on);
+    }
+
+    #[test]
+    fn a_surface_that_goes_on_elsewhere_is_said_to() {
+        let oval = around("y^2 + z^2 = x*(x - 1)*(x - 5)");
+        assert!(oval.goes_on && oval.region.max().x < 1.2, "{oval:?}");
+        for formula in ["sin(x) = cos(y) + sin(z)", "x^2 + y^2 = 9", "z = x*y", "x = 10"] {
+            assert!(around(formula).goes_on, "{formula}");
+        }
+        for formula in ["x^2 + y^2 + z^2 = 1", "x^4 + y^4 + z^4 = 3*x^2 + 7", "x^2 + y^2 + z^2 = -1"] {
+            assert!(!around(formula).goes_on, "{formula}");
+        }
+    }
+
+    #[test]
+    fn what_is_far_away_is_looked_for_there() {
+        assert_close(
+            "(x - 3000)^2 + y^2 + z^2 = 1",
+            DVec3::new(2999.0, -1.0, -1.0),
+            DVec3::new(3001.0, 1.0, 1.0),
+        );
+        assert_close("x^2 + y^2 + z^2 = 1e12", DVec3::splat(-1e6), DVec3::splat(1e6));
+    }
+
+    /// Nearer cubes show corners of the hyperboloid, and its waist is farther out.
+    #[test]
+    fn scraps_are_not_taken_for_the_surface() {
+        let region = fitted("x^2 + y^2 - z^2 = 100");
+        assert!(region.max().x >= 30.0, "{region:?}");
     }
 
     #[test]
