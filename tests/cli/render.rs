@@ -50,6 +50,38 @@ fn the_picture_shows_the_sphere() {
     assert_eq!(json["pixels"]["undecided"], 0);
 }
 
+/// A picture in which something is missing says why.
+#[test]
+fn notes_say_what_a_picture_does_not_show() {
+    let case = Case::new();
+    let noted = |formula: &str, more: &[&str]| {
+        let json = render(&case, formula, &[&["--json"], more].concat()).exits(0).reports("").json();
+        json["notes"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|note| note.as_str().unwrap().to_owned())
+            .collect::<Vec<_>>()
+    };
+    assert!(noted(SPHERE, &[]).is_empty());
+    assert!(noted(SPHERE, &["--box", "-2,2"]).is_empty());
+    let away = ["--eye", "0,-5,0", "--target", "0,-9,0"];
+    for (formula, more, expected) in [
+        ("x^2 + y^2 + z^2 = -1", &[][..], "x -2..2, y -2..2, z -2..2, is on the surface"),
+        (SPHERE, &["--box", "-0.5,0.5"], "no point of the box, x -0.5..0.5"),
+        ("sqrt(-1 - x^2) = z", &[], "F is defined nowhere in the box"),
+        ("2 = 1", &[], "does not depend on x, y or z"),
+        (SPHERE, &away, "the camera looks past the box"),
+        ("(x - 0.1)^2 + y^2 + z^2 = 0", &["--box", "-2,2"], "it may consist of points and curves"),
+        ("x^2 + y^2 = 1", &[], "the surface goes on outside of the box that is shown, x -1.09..1.09"),
+        ("floor(x^2 + y^2 + z^2) = 3", &[], "--show-status shows where"),
+    ] {
+        let notes = noted(formula, more);
+        assert!(notes.len() == 1 && notes[0].contains(expected), "{formula}: {notes:?}");
+    }
+    assert!(noted("floor(x^2 + y^2 + z^2) = 3", &["--show-status"]).is_empty());
+}
+
 #[test]
 fn the_report_has_its_keys() {
     let case = Case::new();

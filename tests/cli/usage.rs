@@ -19,6 +19,21 @@ fn every_command_has_help_with_examples() {
 }
 
 #[test]
+fn formulas_in_the_help_are_understood() {
+    let case = Case::new();
+    let mut found = 0;
+    for help in [&["--help"][..], &["render", "--help"], &["eval", "--help"], &["explain", "--help"]] {
+        let text = case.run(help).exits(0).stdout();
+        for example in text.lines().filter(|line| line.trim_start().starts_with("iso ")) {
+            let Some(formula) = example.split('\'').nth(1) else { continue };
+            case.run(&["explain", formula, "--section", "tree"]).exits(0);
+            found += 1;
+        }
+    }
+    assert!(found > 2, "{found} formulas");
+}
+
+#[test]
 fn the_version_is_the_packages() {
     Case::new().run(&["--version"]).exits(0).prints(concat!("iso ", env!("CARGO_PKG_VERSION"), "\n"));
 }

@@ -19,6 +19,7 @@ mod interruption;
 mod machine;
 mod measurement;
 mod method;
+mod notes;
 mod output;
 mod pictures;
 mod plan;

@@ -53,7 +53,12 @@ pub(crate) fn method(flags: &MethodFlags) -> Result<Method, Failure> {
 
 /// The region that was asked for, else one that fits the surface.
 pub(crate) fn region(given: Option<Region>, surface: &Surface) -> Result<Region, CompileError> {
-    given.map_or_else(|| Ok(Fitted::around(surface, &mut Workspace::default())?.region), Ok)
+    given.map_or_else(|| Ok(fitted(surface)?.region), Ok)
+}
+
+/// A region that fits the surface.
+pub(crate) fn fitted(surface: &Surface) -> Result<Fitted, CompileError> {
+    Fitted::around(surface, &mut Workspace::default())
 }
 
 /// The paper's settings, but for what `flags` say.

@@ -44,6 +44,8 @@ pub(crate) struct Summary {
     pub(crate) counters: Counters,
     /// Times.
     pub(crate) milliseconds: Phases,
+    /// What the picture does not show by itself, for people.
+    pub(crate) notes: Vec<String>,
 }
 
 /// What a picture is in its sequence.
@@ -64,14 +66,24 @@ impl Summary {
         let StatusCounts { hit, touch, miss, undecided, unfinished: _ } = self.pixels;
         hit + touch + miss + undecided
     }
+
+    /// How many rays each pixel is made of, in words, if that is more than one.
+    fn rays_each(&self) -> String {
+        let rays = self.finished_pixels() + self.pixels.unfinished;
+        match rays / (u64::from(self.width) * u64::from(self.height)) {
+            1 => String::new(),
+            each => format!(", {each} rays each"),
+        }
+    }
 }
 
-/// The summary in one line.
+/// The summary in one line, and a line for each note.
 impl Display for Summary {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Self { width, height, pixels, milliseconds, .. } = self;
-        write!(f, "{}: {width}x{height} pixels: ", self.files.join(", "))?;
-        write_line(f, pixels, milliseconds)
+        write!(f, "{}: {width}x{height} pixels{}: ", self.files.join(", "), self.rays_each())?;
+        write_line(f, pixels, milliseconds)?;
+        self.notes.iter().try_for_each(|note| write!(f, "\nnote: {note}"))
     }
 }
 
@@ -121,8 +133,8 @@ impl Display for SequenceSummary {
             [first, .., last] => write!(f, "{first} … {last}")?,
             files => write!(f, "{}", files.concat())?,
         }
-        let Summary { width, height, .. } = &self.frames[0];
-        write!(f, ": {} pictures of {width}x{height} pixels: ", self.frames.len())?;
+        let first @ Summary { width, height, .. } = &self.frames[0];
+        write!(f, ": {} pictures of {width}x{height} pixels{}: ", self.frames.len(), first.rays_each())?;
         write_line(f, &self.pixels, &self.milliseconds)
     }
 }

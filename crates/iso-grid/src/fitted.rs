@@ -18,7 +18,7 @@ const MIDDLE: std::ops::Range<i32> = 6..10;
 /// Cells that may hold the surface are cut in halves this often to prove that they do,
 const HALVINGS_TO_PROVE: u32 = 5;
 
-/// as long as there are no more of them.
+/// as long as there are no more of them; of more, some are looked at.
 const MOST_TO_PROVE: usize = 1000;
 
 /// A region is cut in halves this often along each axis: 16 cells.
@@ -60,6 +60,13 @@ impl Glimpse {
 }
 
 impl Fitted {
+    /// The least region that holds both.
+    pub fn hull(&self, other: &Self) -> Self {
+        let region =
+            Region { min: self.region.min.min(other.region.min), max: self.region.max.max(other.region.max) };
+        Self { region, goes_on: self.goes_on || other.goes_on }
+    }
+
     /// A region close around the surface, or around a part of it near the origin.
     ///
     /// The surface is looked for in growing cubes around the origin, in cells that intervals cannot prove empty. The
@@ -124,6 +131,15 @@ impl Region {
         cube(HALF_SIDES[0])
     }
 
+    /// F − C over the region.
+    ///
+    /// # Errors
+    /// When the engine cannot compile the surface.
+    pub fn enclosure(&self, surface: &Surface, workspace: &mut Workspace) -> Result<Decorated, CompileError> {
+        let corners = std::iter::once([self.min, self.max]);
+        Ok(enclose(&**surface.value_enclosures()?, workspace, corners)[0])
+    }
+
     /// Whether some of the surface may be in the region; if not, that is proven.
     ///
     /// # Errors
@@ -163,10 +179,11 @@ impl Region {
         Some(Glimpse { held, axes_met, is_scrap: axes_met > 0 && !cells.iter().any(is_in_middle) })
     }
 
-    /// Whether the surface certainly has points in some of sixteen cells along each axis. If there are few, they are halved to find out.
+    /// Whether the surface is found to have points in some of sixteen cells along each axis. If there are few, they are halved to find out.
     fn is_crossed(&self, mut cells: Vec<IVec3>, kernel: &dyn BoxKernel, workspace: &mut Workspace) -> bool {
         for depth in HALVINGS..=HALVINGS + HALVINGS_TO_PROVE {
-            if cells.chunks(64).any(|cells| self.changes_sign(cells, 1 << depth, kernel, workspace)) {
+            let some: Vec<_> = cells.iter().copied().step_by(1 + cells.len() / MOST_TO_PROVE).collect();
+            if some.chunks(64).any(|cells| self.changes_sign(cells, 1 << depth, kernel, workspace)) {
                 return true;
             }
             if cells.len() > MOST_TO_PROVE {

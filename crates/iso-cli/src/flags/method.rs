@@ -9,7 +9,7 @@ use crate::values;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Region and method")]
 pub(crate) struct RegionFlag {
-    /// The box in which the surface is looked for [default: one that fits it, or -2,2 where it goes on for ever]
+    /// The box in which the surface is looked for [default: one that fits it, or a part of it where it goes on for ever]
     ///
     /// `a,b` reaches from a to b along every axis; six numbers are xmin,ymin,zmin,xmax,ymax,zmax.
     #[arg(long = "box", value_name = "BOX", value_parser = values::region, allow_hyphen_values = true)]

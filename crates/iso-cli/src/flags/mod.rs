@@ -81,7 +81,7 @@ follows a ray for every pixel, and by default proves what it draws.";
 const EXAMPLES: &str = "\
 Examples:
   iso render 'x^2 + y^2 + z^2 = 1' -o sphere.png
-  iso render 'cos x + cos y + cos z' --level 0.5 --box -6,6 -o gyre.png
+  iso render 'cos(x) + cos(y) + cos(z)' --level 0.5 --box -6,6 -o cosines.png
   iso render @heart.txt --set a=2 --size 1024x1024
   iso eval 'sin(x)*y' --points points.csv --gradient
   iso explain 'x^2 + y^2 - z'

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::sync::Arc;
 
 use iso_expr::Engine;
-use iso_grid::{Counters, GridError, Kernel, Region, Tracer};
+use iso_grid::{Counters, Fitted, GridError, Kernel, Region, Tracer};
 use iso_render::{Animation, Pass, Picture, Scene, Shading, Size, Smoothing, render_over};
 use rayon::ThreadPool;
 
@@ -15,7 +15,8 @@ use crate::engine::{engine, threads};
 use crate::failure::Failure;
 use crate::flags::RenderFlags;
 use crate::interruption::Interruption;
-use crate::method::region;
+use crate::method::fitted;
+use crate::notes::Drawn;
 use crate::output::OutputFile;
 use crate::pictures::animation;
 use crate::plan::{PlanReport, kernels_compiled};
@@ -97,7 +98,7 @@ impl Request {
 
     fn draw_all(
         &mut self,
-        region: Region,
+        region: Fitted,
         mut animation: Option<&mut Animation<&mut Vec<u8>>>,
         progress: &Progress,
     ) -> Result<Vec<Summary>, Failure> {
@@ -119,23 +120,22 @@ impl Request {
     }
 
     /// The region that was asked for, else the least that fits every surface, so that the camera stands still where it may.
-    fn region(&mut self) -> Result<Region, Failure> {
+    fn region(&mut self) -> Result<Fitted, Failure> {
         if let Some(region) = self.region {
-            return Ok(region);
+            return Ok(Fitted { region, goes_on: false });
         }
-        let mut fitted: Option<Region> = None;
+        let mut hull: Option<Fitted> = None;
         let mut before: Option<Arc<Subject>> = None;
         for Shot { subject, phases, .. } in &mut self.shots {
             if before.as_ref().is_some_and(|before| Arc::ptr_eq(before, subject)) {
                 continue;
             }
             add_to(&mut phases.compile, || subject.surface.compile(Kernel::ValueEnclosures))?;
-            let region = add_to(&mut phases.preprocess, || region(None, &subject.surface))?;
-            let hull = fitted.map_or(Ok(region), |fitted| fitted.hull(&region));
-            fitted = Some(hull.expect("regions that are fitted are bounded"));
+            let fitted = add_to(&mut phases.preprocess, || fitted(&subject.surface))?;
+            hull = Some(hull.map_or(fitted, |hull| hull.hull(&fitted)));
             before = Some(Arc::clone(subject));
         }
-        Ok(fitted.expect("there is a picture to be drawn"))
+        Ok(hull.expect("there is a picture to be drawn"))
     }
 
     /// Draws a picture over the one before, writes its files and says what it took. `None` when work is stopped before anything is
@@ -143,13 +143,14 @@ impl Request {
     fn draw(
         &self,
         shot: Shot,
-        region: Region,
+        fitted: Fitted,
         prepared: &mut Option<Prepared>,
         picture: &mut Picture,
         progress: &(dyn Fn(u64, u64) + Sync),
     ) -> Result<Option<Summary>, Failure> {
         let Shot { subject, camera: flags, files, frame, mut phases } = shot;
         let Subject { surface, operations_before, plan } = &*subject;
+        let region = fitted.region;
         let camera = camera(&flags, &region, self.drawn)?;
         let mut counters = Counters::default();
         let known = prepared.take().filter(|known| Arc::ptr_eq(&known.subject, &subject));
@@ -185,6 +186,14 @@ impl Request {
         phases.shade += 1e3 * picture.shade_seconds;
         counters += picture.counters;
         add_to(&mut phases.encode, || files.write(picture))?;
+        let drawn = Drawn {
+            surface,
+            fitted,
+            camera: &camera,
+            size: self.drawn,
+            pixels: picture.counts,
+            shows_status: self.shows_status,
+        };
         let summary = Summary {
             files: files.names(),
             frame,
@@ -204,6 +213,7 @@ impl Request {
             pixels: picture.counts,
             counters,
             milliseconds: phases,
+            notes: drawn.notes()?,
         };
         Ok(Some(summary))
     }

@@ -1,0 +1,89 @@
+//! What a picture does not show by itself: why nothing is seen, what is cut off, what is not known.
+
+use iso_grid::{Fitted, Region, Surface, Workspace};
+use iso_render::{Camera, Size, StatusCounts};
+
+use crate::failure::Failure;
+
+/// A picture that was drawn.
+pub(crate) struct Drawn<'a> {
+    pub(crate) surface: &'a Surface,
+    pub(crate) fitted: Fitted,
+    pub(crate) camera: &'a Camera,
+    pub(crate) size: Size,
+    pub(crate) pixels: StatusCounts,
+    /// Whether colours tell what is not known.
+    pub(crate) shows_status: bool,
+}
+
+impl Drawn<'_> {
+    /// Each with what to try, for people.
+    pub(crate) fn notes(&self) -> Result<Vec<String>, Failure> {
+        let StatusCounts { hit, touch, undecided, unfinished, .. } = self.pixels;
+        let mut notes = Vec::new();
+        if undecided > 0 && !self.shows_status {
+            let problem = format!("of {undecided} rays nothing is proven, which looks like background");
+            notes.push(format!("{problem}: --show-status shows where"));
+        }
+        if hit + touch + undecided + unfinished == 0 {
+            notes.push(format!("nothing is seen: {}", self.why_nothing()?));
+        } else if self.fitted.goes_on {
+            let shown = extent(&self.fitted.region);
+            notes.push(format!(
+                "the surface goes on outside of the box that is shown, {shown}: --box sets another"
+            ));
+        }
+        Ok(notes)
+    }
+
+    /// Why no ray meets the surface.
+    fn why_nothing(&self) -> Result<String, Failure> {
+        let Self { surface, fitted: Fitted { region, .. }, .. } = self;
+        let shown = extent(region);
+        let mut workspace = Workspace::default();
+        if surface.program().arguments() == 0 {
+            return Ok("F − C does not depend on x, y or z".to_owned());
+        }
+        if region.enclosure(surface, &mut workspace)?.interval.is_empty() {
+            return Ok(format!("F is defined nowhere in the box, {shown}: --box sets another"));
+        }
+        if !region.may_hold(surface, &mut workspace)? {
+            return Ok(format!(
+                "no point of the box, {shown}, is on the surface: try another --box or --level"
+            ));
+        }
+        if self.looks_past() {
+            return Ok(format!("the camera looks past the box, {shown}"));
+        }
+        let reasons = "it may consist of points and curves, or lie where the camera does not look";
+        Ok(format!("no ray meets the surface in the box, {shown}: {reasons}"))
+    }
+
+    /// Whether no ray meets the region.
+    fn looks_past(&self) -> bool {
+        let Self { camera, size, fitted, .. } = self;
+        let mut rays =
+            (0..size.height()).flat_map(|row| (0..size.width()).map(move |column| camera.ray(column, row)));
+        rays.all(|ray| fitted.region.clip(&ray).is_none())
+    }
+}
+
+/// How far a region reaches along each axis, in three digits.
+fn extent(region: &Region) -> String {
+    let sides = region.min().to_array().into_iter().zip(region.max().to_array());
+    let sides = ["x", "y", "z"]
+        .into_iter()
+        .zip(sides)
+        .map(|(axis, (lo, hi))| format!("{axis} {}..{}", short(lo), short(hi)));
+    sides.collect::<Vec<_>>().join(", ")
+}
+
+/// A number in three digits at least, without zeros at its end.
+fn short(value: f64) -> String {
+    if value != 0.0 && value.abs() < 1e-3 {
+        return format!("{value:.1e}");
+    }
+    let digits = (2.0 - value.abs().log10().floor()).clamp(0.0, 12.0) as usize;
+    let text = format!("{value:.digits$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
