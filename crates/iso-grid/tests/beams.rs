@@ -8,7 +8,7 @@ use iso_expr::{Ast, Interpreter, Program};
 use iso_grid::{Certified, Hit, Outcome, Raster, Ray, Region, Span, Surface, Tile, Tracer, Workspace};
 
 /// Formulas, half sides of their regions, and what they are tried for.
-const SCENES: [(&str, f64, &str); 38] = [
+const SCENES: [(&str, f64, &str); 39] = [
     ("(x^2+y^2-1)^2 + 4z^2 + 0.5x - 0.2", 1.5, "a classic"),
     ("x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8", 2.6, "parts in front of each other"),
     ("sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)", 5.0, "cut by the region's faces"),
@@ -51,11 +51,15 @@ const SCENES: [(&str, f64, &str); 38] = [
     ("min(z - sin(9x)sin(9y)/9, x^2+y^2+z^2-0.4, y+0.5)", 1.2, "a ball on wavy ground"),
     ("min(x^2+y^2-z-0.3, 2-exp(x)-exp(z)+y^2, x^6+y^6+z^6-0.1)", 1.3, "seams of faces that bend both ways"),
     ("max(min(x+y, z-0.3), min(x-y, -z-0.3), x^2+y^2+z^2-1)", 1.4, "edges and seams that meet"),
+    (SHARP, 1.3, "a sharp blend, whose exponentials underflow not far from the surface"),
 ];
 
 /// Of six balls and a slab, few count anywhere.
 const BALLS: &str = "ball(a,b,c) := (x-a)^2+(y-b)^2+(z-c)^2 - 0.3; \
     max(min(min(min(ball(1,0,0), ball(-1,0,0)), min(ball(0,1,0), ball(0,-1,0))), min(ball(0,0,1), ball(0,0,-1))), abs(z+0.1) - 1)";
+/// Two balls.
+const SHARP: &str = "a := sqrt(x^2+y^2+z^2) - 0.5; b := sqrt((x-0.7)^2+y^2+z^2) - 0.4; \
+    -ln(exp(-3000a) + exp(-3000b))/3000";
 /// A distance, roots of zero and exponentials included.
 const BOX: &str = "d := sqrt(max(abs(x)-0.6,0)^2 + max(abs(y)-0.6,0)^2 + max(abs(z)-0.4,0)^2) - 0.1; \
     b := sqrt((x-0.7)^2+y^2+(z-0.5)^2) - 0.4; \

@@ -1,5 +1,6 @@
 //! The part of a ray inside the region, with its ends enclosed.
 
+use glam::DVec3;
 use iso_expr::interval::{round_down, round_up};
 
 use crate::{Ray, Region, Span};
@@ -17,10 +18,11 @@ impl Clip {
     /// The slab method (Kay and Kajiya 1986) with quotients rounded outwards. `None` when the ray certainly misses the
     /// region, or is no ray since it stands still or has an end that is not finite.
     pub(super) fn new(region: &Region, ray: &Ray) -> Option<Self> {
-        if !(ray.origin.is_finite() && ray.direction.is_finite()) {
+        if !(ray.origin.is_finite() && ray.direction.is_finite()) || ray.direction == DVec3::ZERO {
             return None;
         }
-        let mut outer = Span { start: 0.0, end: f64::INFINITY };
+        // No double is larger, although the region may reach farther.
+        let mut outer = Span { start: 0.0, end: f64::MAX };
         let mut inner = outer;
         for axis in 0..3 {
             let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
@@ -36,7 +38,7 @@ impl Clip {
             outer = Span { start: outer.start.max(entry.start), end: outer.end.min(exit.end) };
             inner = Span { start: inner.start.max(entry.end), end: inner.end.min(exit.start) };
         }
-        (outer.start <= outer.end && outer.end.is_finite()).then_some(Self { outer, inner })
+        (outer.start <= outer.end).then_some(Self { outer, inner })
     }
 }
 
@@ -52,8 +54,6 @@ fn crossing(face: f64, origin: f64, direction: f64) -> Span {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
 
     fn clip(origin: [f64; 3], direction: [f64; 3]) -> Option<Clip> {
@@ -85,6 +85,14 @@ mod tests {
         assert_eq!(clip([-3.0, 0.0, 0.0], [1.0, 1.0, 0.0]), None);
         assert_eq!(clip([0.0; 3], [0.0; 3]), None);
         assert_eq!(clip([f64::NAN, 0.0, 0.0], [1.0, 0.0, 0.0]), None);
+    }
+
+    /// It leaves the region after more units of time than any double counts.
+    #[test]
+    fn a_ray_may_be_too_slow_to_leave_the_region() {
+        let Clip { outer, inner } = clip([-2.0, 0.1, 0.1], [1e-308, 0.0, 0.0]).unwrap();
+        assert!(outer.start <= 1e308 && 1e308 <= inner.start, "{outer:?}, {inner:?}");
+        assert_eq!((outer.end, inner.end), (f64::MAX, f64::MAX));
     }
 
     #[test]

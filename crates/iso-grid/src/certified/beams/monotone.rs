@@ -135,7 +135,7 @@ impl Subdivision<'_> {
         counters.operations += of_part.charge(kernel_of_last, taken.last);
     }
 
-    /// What values say over a part. `None` when rounding is not bounded there.
+    /// What values say over a part. `None` when rounding is not bounded there, or too much to enclose roots as narrowly as is wanted.
     fn sight(&mut self, part: &Part) -> Option<Sight> {
         let form = &part.form;
         let tolerance = self.tolerance(part);
@@ -152,7 +152,8 @@ impl Subdivision<'_> {
             self.memory.blurred = Some(part.kernels);
         }
         let exact = self.rounding(part.kernels, bounds)?;
-        sight(&exact, self.beam(part.beam))
+        // Along a single ray less of the stretch is looked at where the root is, and rounding may be less there.
+        sight(&exact, self.beam(part.beam)).filter(|sight| sight.tolerance <= tolerance)
     }
 
     /// Bundles the rays of a part that are still followed, and counts the bundles. Those that may have a root so near to a face of
