@@ -94,6 +94,31 @@ error: `log` alone does not say its base
     }
 }
 
+/// What people type who come from other programs.
+#[test]
+fn habits_from_elsewhere_are_answered() {
+    let case = Case::new();
+    case.file("ball.txt", "x^2 + y^2 + z^2 = 1");
+    for (formula, expected) in [
+        ("xy = 1", "did you mean `x*y`? To define it, write `xy := …`"),
+        ("r = x^2; r", "to define it, write `r := …`"),
+        ("sqr(x) = y", "`sqr(u)` is written `u^2`"),
+        ("x mod 1 = y", "it is called as `mod(a, b)`"),
+        ("sin x = y", "write `sin(x)`"),
+        ("atan(y, x) = z", "it is called as `atan2(y, x)`"),
+        ("F(x, y, z) = x", "leave out `F(…) =` before a formula"),
+        ("x && y", "write `and` between conditions"),
+        ("\\frac{x}{2}", "`\\` has no meaning in a formula"),
+        ("x = 1 // a plane", "comments begin with `#`"),
+        ("x = 30°", "angles are in radians"),
+        ("ball.txt", "there is a file of this name: write `@ball.txt` to read it"),
+        ("@", "write `@formula.txt`"),
+    ] {
+        let report = render(&case, formula, &[]).exits(2).prints("").stderr();
+        assert!(report.contains(expected), "{formula}: {report}");
+    }
+}
+
 #[test]
 fn errors_in_files_name_the_file_and_the_line() {
     let case = Case::new();

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::ffi::OsStr;
 use std::fs;
 use std::io::{self, Read};
+use std::path::Path;
 
 use iso_expr::{Ast, Formula, FormulaError, Program};
 
@@ -19,8 +20,13 @@ pub(crate) struct Source {
     bytes: Vec<u8>,
 }
 
-/// The end of the names of files that hold models.
-const MODEL: &str = ".vm";
+/// What a formula is called that was given as such.
+const TYPED: &str = "formula";
+
+/// Whether the file of this name holds a model.
+fn is_model(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vm"))
+}
 
 /// A formula that was read.
 pub(crate) enum Text {
@@ -35,9 +41,10 @@ impl Source {
     pub(crate) fn read(argument: &OsStr) -> Result<Self, Failure> {
         let (name, read) = match argument.as_encoded_bytes() {
             b"-" => ("standard input".to_owned(), read_standard_input()),
+            b"@" => return Err(Failure::usage("`@` names no file", "write `@formula.txt`")),
             [b'@', ..] => read_file(&argument.to_string_lossy()[1..]),
-            bytes if bytes.ends_with(MODEL.as_bytes()) => read_file(&argument.to_string_lossy()),
-            bytes => ("formula".to_owned(), Ok(bytes.to_vec())),
+            _ if is_model(&argument.to_string_lossy()) => read_file(&argument.to_string_lossy()),
+            bytes => (TYPED.to_owned(), Ok(bytes.to_vec())),
         };
         match read {
             Ok(bytes) => Ok(Self { name, bytes }),
@@ -47,8 +54,7 @@ impl Source {
 
     /// The tree, or the model when the name is that of one.
     pub(crate) fn parse(&self) -> Result<Text, Failure> {
-        let is_model = self.name.ends_with(MODEL);
-        let text = iso_expr::decode(&self.bytes).and_then(|text| match is_model {
+        let text = iso_expr::decode(&self.bytes).and_then(|text| match is_model(&self.name) {
             true => Formula::read_model(text).map(Text::Model),
             false => Ast::parse(text).map(Text::Formula),
         });
@@ -75,6 +81,11 @@ impl Source {
     }
 
     fn wrong(&self, error: FormulaError) -> Failure {
+        let text = self.text();
+        let error = match self.name == TYPED && Path::new(&*text).is_file() {
+            true => error.with_help(format!("there is a file of this name: write `@{text}` to read it")),
+            false => error,
+        };
         Failure::Formula { source_text: Box::new(self.clone()), error: Box::new(error) }
     }
 }

@@ -22,7 +22,9 @@ impl FormulaError {
         Self { kind, span, help: None }
     }
 
-    pub(super) fn with_help(self, help: impl Into<String>) -> Self {
+    /// The same with this help.
+    #[must_use]
+    pub fn with_help(self, help: impl Into<String>) -> Self {
         Self { help: Some(help.into()), ..self }
     }
 
@@ -84,7 +86,7 @@ pub enum FormulaErrorKind {
         allowed: usize,
     },
     /// A character without a meaning here.
-    #[error("`{}` has no meaning in a formula", .character.escape_debug())]
+    #[error("`{}` has no meaning in a formula", readable(*.character))]
     StrayCharacter {
         /// The character.
         character: char,
@@ -248,4 +250,9 @@ fn shown(cycle: &[String]) -> String {
     }
     let (first, last) = (&cycle[..ENDS], &cycle[cycle.len() - ENDS..]);
     format!("{} → … → {}", first.join(" → "), last.join(" → "))
+}
+
+/// A character as it is, unless nothing could be seen of it.
+fn readable(character: char) -> String {
+    if character.is_control() { character.escape_debug().to_string() } else { character.to_string() }
 }

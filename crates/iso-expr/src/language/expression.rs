@@ -156,7 +156,11 @@ impl<'t> Reader<'_, 't> {
                 self.open(BracketKind::Call { function, name: *item, first: self.operands.len() }, next);
                 Ok(false)
             }
-            Some(Meaning::Function(_)) => Err(fault::missing_arguments(item, &next)),
+            Some(Meaning::Function(function)) => {
+                let takes_one = self.scope.argument_count(function).allows(1);
+                let pattern = (!takes_one).then(|| self.scope.pattern(item.text, function));
+                Err(fault::missing_arguments(item, &next, pattern))
+            }
             None => {
                 Err(fault::unknown_name(item, &next, self.cursor.previous(), self.scope, self.parameters))
             }

@@ -23,8 +23,14 @@ pub(super) fn unknown_name(
     }
     let starts_statement = previous.is_none_or(|item| matches!(item.kind, Kind::semicolon | Kind::newline));
     let help = match suggestion(item.text, is_called, scope, parameters) {
-        _ if starts_statement && next.kind == Kind::equal => format!("to define it, write `{name} := …`"),
+        None if starts_statement && next.kind == Kind::equal => format!("to define it, write `{name} := …`"),
+        Some(help) if starts_statement && next.kind == Kind::equal => {
+            format!("{help} To define it, write `{name} := …`")
+        }
         Some(help) => help,
+        None if is_called && starts_statement => {
+            format!("leave out `{name}(…) =` before a formula, or define it: `{name}(u) := …`")
+        }
         None if is_called => format!("define it before: `{name}(u) := …`"),
         None => format!("the coordinates are x, y and z; define others before: `{name} := 1`"),
     };
@@ -35,13 +41,14 @@ pub(super) fn unknown_name(
     FormulaError::new(kind, item.span()).with_help(help)
 }
 
-/// A function's name without a parenthesis after it.
-pub(super) fn missing_arguments(item: &Item<'_>, next: &Item<'_>) -> FormulaError {
+/// A function's name without a parenthesis after it; `pattern` is how it should look if it takes more than one argument.
+pub(super) fn missing_arguments(item: &Item<'_>, next: &Item<'_>, pattern: Option<String>) -> FormulaError {
     if item.text == "log" {
         return bare_logarithm(item.span());
     }
     let name = shortened(item.text);
     let help = match next.kind {
+        _ if let Some(pattern) = pattern => format!("it is called as `{}`", shortened(&pattern)),
         Kind::name | Kind::number | Kind::pi | Kind::tau => {
             format!("write `{name}({})`", shortened(next.text))
         }
@@ -67,6 +74,7 @@ pub(super) fn argument_count(
     if name == "log" && given == 1 {
         return bare_logarithm(span);
     }
+    let pattern = if name == "atan" && given == 2 { "atan2(y, x)".to_owned() } else { pattern };
     let kind =
         FormulaErrorKind::ArgumentCount { function: shortened(name), given, expected: expected.shown() };
     FormulaError::new(kind, span).with_help(format!("it is called as `{}`", shortened(&pattern)))
@@ -95,11 +103,20 @@ pub(super) fn stray(item: &Item<'_>) -> FormulaError {
     let help = match character {
         '%' => Some("write `mod(a, b)` for the remainder of a divided by b, with the sign of b"),
         '[' | ']' | '{' | '}' => Some("use parentheses `(` `)`"),
-        '&' => Some("write `and`"),
+        '&' => Some(
+            "write `and` between conditions; `max(F, G)` is where both F and G are negative, `min(F, G)` where one of them is",
+        ),
         '!' => Some("write `not`, or `!=` for inequality"),
         ':' => Some("write `:=` for a definition"),
         '.' => Some("a point stands in numbers only, as in `0.5`"),
         '\'' | '"' => Some("a formula is written without quotation marks"),
+        '\\' => Some("LaTeX is not read: write `a/b`, `sqrt(a)`, `sin(a)`"),
+        '∛' => Some("write `cbrt(a)`"),
+        '∜' => Some("write `a^(1/4)`"),
+        '÷' => Some("write `/`"),
+        '°' => Some("angles are in radians: write `*pi/180`"),
+        '½' | '⅓' | '⅔' | '¼' | '¾' => Some("write fractions as `1/2`"),
+        '₀'..='₉' => Some("write indices as digits: `x1`"),
         '?' => Some("write `if(condition, a, b)`"),
         _ => None,
     };
@@ -124,9 +141,15 @@ pub(super) fn missing_operand(
         _ if is_head => misplaced_definition(item),
         _ => {
             let kind = FormulaErrorKind::MissingOperand { found: item.shown() };
-            let help = follows_line.then(|| {
-                "a statement ends with its line, unless the line ends with an operator or inside parentheses".to_owned()
-            });
+            let is_comment = item.text == "/" && before.is_some_and(|before| before.text == "/");
+            let help = match (is_comment, follows_line) {
+                (true, _) => Some("comments begin with `#`"),
+                (_, true) => Some(
+                    "a statement ends with its line, unless the line ends with an operator or inside parentheses",
+                ),
+                _ => None,
+            };
+            let help = help.map(str::to_owned);
             FormulaError::new(kind, item.span()).with_possible_help(help)
         }
     }

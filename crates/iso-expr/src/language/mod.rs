@@ -29,6 +29,7 @@ mod ast;
 mod builder;
 mod cursor;
 mod definition;
+mod elsewhere;
 mod error;
 mod expression;
 mod fault;

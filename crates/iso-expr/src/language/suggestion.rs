@@ -1,5 +1,6 @@
 //! What an unknown name may have been meant to say.
 
+use super::elsewhere::written_here;
 use super::scope::{Parameters, Scope};
 
 /// Longer names are no slips of the hand, and comparing them would take long.
@@ -23,6 +24,7 @@ pub(super) fn suggestion(
     let as_call = || functions_first(name, is_called, &values, &functions);
     as_case()
         .map(|other| format!("did you mean `{other}`?"))
+        .or_else(|| written_here(name))
         .or_else(|| as_product().or_else(as_call).map(|text| format!("did you mean `{text}`?")))
         .or_else(|| nearest(name, known.iter().copied()).map(|other| format!("did you mean `{other}`?")))
 }
