@@ -87,7 +87,7 @@ fn better_forms_are_named_but_not_used() {
     let case = Case::new();
     let sections = ["--section", "hints,program"];
     let text = case.run(&[&["explain", "exp(x) - 1 = y"][..], &sections].concat()).exits(0).stdout();
-    assert!(text.contains("hints: 1 hints") && text.contains("expm1(x) keeps more of them"), "{text}");
+    assert!(text.contains("hints: 1 hint,") && text.contains("expm1(x) keeps more of them"), "{text}");
     assert!(text.contains("exp(x)\n") && !text.contains("= expm1"), "{text}");
     let json = case.run(&["explain", PAPER, "--json", "--section", "hints"]).exits(0).json();
     assert_eq!(json["hints"]["size"], 0);

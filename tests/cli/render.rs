@@ -172,7 +172,11 @@ fn outputs_that_cannot_be_written_are_known_before_the_work() {
     render(&case, SPHERE, &["-o", "noextension"]).exits(2);
     render(&case, SPHERE, &["--depth", "depth.png"]).exits(2).mentions("--depth writes .exr files");
     let missing = render(&case, SPHERE, &["-o", "missing/out.png", "--size", "20000x20000"]);
-    missing.exits(1).mentions("cannot write missing/out.png");
+    missing.exits(1).reports("error: cannot write missing/out.png: No such file or directory (os error 2)\n");
+    let wide = render(&case, SPHERE, &["-o", "out.jpg", "--size", "70000x100"]);
+    wide.exits(2).mentions("no more than 65535 columns and rows");
+    let twice = render(&case, SPHERE, &["--depth", "same.exr", "--normals", "same.exr"]);
+    twice.exits(2).mentions("two layers go to one file, same.exr");
     std::fs::create_dir(case.path("folder.png")).unwrap();
     render(&case, SPHERE, &["-o", "folder.png"]).exits(1).mentions("it is a directory");
     assert_eq!(case.names(), ["folder.png"]);

@@ -135,7 +135,14 @@ fn temporary_beside(target: &Path) -> io::Result<NamedTempFile> {
     // Temporary files are private by default; a result is as readable as any file that the user creates.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder)
+    builder.tempfile_in(folder).map_err(without_temporary_name)
+}
+
+/// The error of a temporary file, whose name is nobody's concern.
+fn without_temporary_name(error: io::Error) -> io::Error {
+    let text = error.to_string();
+    let cause = text.split(" at path ").next().unwrap_or_default();
+    io::Error::new(error.kind(), cause.to_owned())
 }
 
 #[cfg(test)]

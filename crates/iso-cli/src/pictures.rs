@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use iso_render::{ImageFormat, Layers, Picture, Status};
+use iso_render::{ImageFormat, Layers, Picture, Size, Status};
 
 use crate::failure::Failure;
 use crate::flags::LayerFlags;
@@ -38,17 +38,32 @@ impl PictureFiles {
     ) -> Result<Self, Failure> {
         let color = color.map(|path| {
             let format = ImageFormat::of(&path)?;
+            check_size(format, flags.size)?;
             Ok::<_, Failure>((OutputFile::new(rename(&path))?, format))
         });
         let other = |path: &Option<PathBuf>, extension, flag| {
             with_extension(path.as_deref().map(rename), extension, flag)
         };
-        Ok(Self {
+        let files = Self {
             color: color.transpose()?,
             depth: other(&flags.depth, "exr", "--depth")?,
             normals: other(&flags.normals, "exr", "--normals")?,
             points: other(&flags.points, "csv", "--points")?,
-        })
+        };
+        files.check_apart()?;
+        Ok(files)
+    }
+
+    /// No file may be written over another.
+    fn check_apart(&self) -> Result<(), Failure> {
+        let names = self.names();
+        match names.iter().enumerate().find(|(place, name)| names[..*place].contains(name)) {
+            Some((_, name)) => Err(Failure::usage(
+                format!("two layers go to one file, {name}"),
+                "give each a file of its own",
+            )),
+            None => Ok(()),
+        }
     }
 
     /// The files' names as given, the shaded picture first.
@@ -76,6 +91,16 @@ impl PictureFiles {
     }
 }
 
+/// Refuses a picture that the format cannot hold.
+fn check_size(format: ImageFormat, size: Size) -> Result<(), Failure> {
+    let longest = format.longest_side();
+    if size.width().max(size.height()) <= longest {
+        return Ok(());
+    }
+    let problem = format!("this format holds no more than {longest} columns and rows");
+    Err(Failure::usage(problem, "choose a smaller --size, or a .png file"))
+}
+
 /// What must be kept of a picture to write the files that `flags` name.
 pub(crate) fn layers(flags: &LayerFlags) -> Layers {
     let points = flags.points.is_some();
@@ -96,7 +121,9 @@ const ANIMATION: &str = "iso.gif";
 
 /// The file of all pictures of a sequence, unless each has its own.
 pub(crate) fn animation(flags: &LayerFlags) -> Result<Option<OutputFile>, Failure> {
-    color(flags, ANIMATION).filter(|path| is_animation(path)).map(OutputFile::new).transpose()
+    let Some(path) = color(flags, ANIMATION).filter(|path| is_animation(path)) else { return Ok(None) };
+    check_size(ImageFormat::of(&path)?, flags.size)?;
+    OutputFile::new(path).map(Some)
 }
 
 fn is_animation(path: &Path) -> bool {

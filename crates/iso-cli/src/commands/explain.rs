@@ -83,7 +83,8 @@ impl Stage {
     }
 
     fn write(&self, writer: &mut dyn Write, name: &str) -> io::Result<()> {
-        writeln!(writer, "{name}: {} {}, {:.3} ms", self.size, self.unit, self.milliseconds)?;
+        let unit = if self.size == 1 { self.unit.trim_end_matches('s') } else { self.unit };
+        writeln!(writer, "{name}: {} {unit}, {:.3} ms", self.size, self.milliseconds)?;
         for line in self.text.lines() {
             writeln!(writer, "    {line}")?;
         }

@@ -39,7 +39,7 @@ use clap_complete::Shell;
 /// See F(x, y, z) = C.
 #[derive(Debug, Parser)]
 #[command(name = "iso", version, about = "See F(x, y, z) = C", long_about = LONG_ABOUT, after_help = EXAMPLES, max_term_width = 100)]
-#[command(arg_required_else_help = true, propagate_version = true, disable_help_subcommand = true)]
+#[command(arg_required_else_help = true, propagate_version = true)]
 #[command(args_override_self = true)]
 pub(crate) struct Flags {
     /// What to do.

@@ -33,6 +33,15 @@ impl ImageFormat {
             _ => Err(EncodeError::UnknownFormat { given: format!("“.{extension}”") }),
         }
     }
+
+    /// The most columns and rows that a file holds.
+    pub fn longest_side(self) -> u32 {
+        match self.0 {
+            image::ImageFormat::Jpeg | image::ImageFormat::Gif => u32::from(u16::MAX),
+            image::ImageFormat::WebP => 1 << 14,
+            _ => u32::MAX,
+        }
+    }
 }
 
 impl Picture {
@@ -64,6 +73,7 @@ mod tests {
 
     use super::super::testing::picture;
     use super::*;
+    use crate::Size;
 
     #[test]
     fn formats_come_from_extensions() {
@@ -76,6 +86,19 @@ mod tests {
                 matches!(ImageFormat::of(Path::new(path)), Err(EncodeError::UnknownFormat { .. })),
                 "{path}"
             );
+        }
+    }
+
+    #[test]
+    fn formats_hold_their_longest_sides_and_no_longer_ones() {
+        for extension in ["jpg", "gif", "webp"] {
+            let format = ImageFormat::of(Path::new("a").with_extension(extension).as_path()).unwrap();
+            for (width, fits) in [(format.longest_side(), true), (format.longest_side() + 1, false)] {
+                let mut picture = Picture::empty(Size::new(width, 1).unwrap());
+                picture.color = vec![[0; 3]; width as usize].into();
+                let written = picture.write_color(format, &mut Cursor::new(Vec::new()));
+                assert_eq!(written.is_ok(), fits, "{extension}, {width} columns");
+            }
         }
     }
 
