@@ -11,8 +11,8 @@ use crate::certified::clip::Clip;
 use crate::lanes::ROW;
 use crate::{Kernel, Span, Workspace};
 
-/// An enclosure of a root no wider than this many times what rounding of F alone makes it is as narrow as it gets.
-const ROUNDINGS: f64 = 2.0;
+/// How many times narrower than what is wanted an enclosure must be that rounding of F alone makes wide, so that there is room for the rest.
+const ROOM: f64 = 1.1;
 
 /// Beams of so many columns and rows are not cut just since not all of their rays have a root.
 const SMALL: usize = 4;
@@ -27,18 +27,18 @@ const DOUBTFUL: usize = 16;
 const SHARP: f64 = 64.0;
 
 impl Sight {
-    /// `None` where nothing is known.
+    /// `None` where nothing is known, or where roundings of F alone make enclosures wider than `tolerance`.
     fn new(form: &Form, tolerance: f64, error: f64) -> Option<Self> {
         let slope = form.slope;
         let least = (1.0 - ROUNDING) * (slope.middle.abs() - slope.radius);
         let blur = (1.0 + ROUNDING) * error / least;
         let unevenness = (1.0 + ROUNDING) * slope.radius / least;
-        (blur.is_finite() && least > 0.0).then(|| Self {
+        (least > 0.0 && 2.0 * ROOM * blur <= tolerance).then(|| Self {
             inverse: 1.0 / slope.middle,
             unevenness,
             bend: unevenness / (form.reach.end - form.reach.start),
             blur,
-            tolerance: tolerance.max(2.0 * ROUNDINGS * blur),
+            tolerance,
         })
     }
 }
@@ -152,8 +152,8 @@ impl Subdivision<'_> {
             self.memory.blurred = Some(part.kernels);
         }
         let exact = self.rounding(part.kernels, bounds)?;
-        // Along a single ray less of the stretch is looked at where the root is, and rounding may be less there.
-        sight(&exact, self.beam(part.beam)).filter(|sight| sight.tolerance <= tolerance)
+        // If not, less of the stretch is looked at along a single ray where its root is, and rounding may be less there.
+        sight(&exact, self.beam(part.beam))
     }
 
     /// Bundles the rays of a part that are still followed, and counts the bundles. Those that may have a root so near to a face of
