@@ -4,14 +4,23 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use glam::DVec3;
+use iso_expr::Ast;
 use iso_grid::{GridSettings, Region};
 use iso_render::{Size, Smoothing};
 use serde::Serialize;
 
-/// A finite number.
+/// A finite number, or a formula of one: `2pi`, `1/3`.
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
-    let value = text.trim().parse::<f64>().map_err(|_| format!("expected a number, found `{text}`"))?;
+    let value = text.trim().parse().ok().or_else(|| constant(text));
+    let value = value.ok_or_else(|| format!("expected a number, found `{text}`"))?;
     if value.is_finite() { Ok(value) } else { Err(format!("expected a finite number, found {value}")) }
+}
+
+/// The value of a formula without x, y and z.
+fn constant(text: &str) -> Option<f64> {
+    let formula = Ast::parse(text).ok()?.lower(&[]).ok()?;
+    let program = formula.program();
+    (!formula.is_equation() && program.arguments() == 0).then(|| program.evaluate([0.0; 3])[0])
 }
 
 /// A finite number above zero.
@@ -165,6 +174,17 @@ mod tests {
         assert_eq!((long.min(), long.max()), (DVec3::new(-1.0, -2.0, -3.0), DVec3::new(4.0, 5.0, 6.0)));
         for wrong in ["", "1", "1,2,3", "2,-2", "0,inf", "a,b", "0,0", "1,2,3,4,5,6,7"] {
             assert!(region(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn numbers_may_be_formulas() {
+        use std::f64::consts::PI;
+        let waves = region("-2pi,2pi").unwrap();
+        assert_eq!((waves.min(), waves.max()), (DVec3::splat(-2.0 * PI), DVec3::splat(2.0 * PI)));
+        assert_eq!(vector("sqrt(2), 1/3, -e^2"), Ok(DVec3::new(2f64.sqrt(), 1.0 / 3.0, -1f64.exp().powi(2))));
+        for wrong in ["x", "1 = 2", "1/0", "ln(-1)", "pi(", "a", "1;2"] {
+            assert!(finite(wrong).is_err(), "{wrong}");
         }
     }
 
