@@ -30,7 +30,7 @@ pub use error::GridError;
 pub use fitted::Fitted;
 pub use kernel::Kernel;
 pub use method::Method;
-pub use normals::{normals, other_normals};
+pub use normals::normals;
 pub use paper::{Direct, Grid, GridSettings, Octree, RootFinder, RootFinding};
 pub use raster::{Raster, Tile};
 pub use ray::{Ray, Span};

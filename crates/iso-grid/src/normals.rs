@@ -21,34 +21,19 @@ const BLOCK: usize = 8;
 /// that the ray has come: 2⁻⁴⁰, and from there on in powers of 8 up to 2⁻¹⁰.
 const APPROACH: [i32; 11] = [-40, -37, -34, -31, -28, -25, -22, -19, -16, -13, -10];
 
-/// The unit normal ∇F/|∇F| at each hit and touch, towards larger F whichever way the ray comes; NaN for other outcomes.
-/// Both slices hold something for each ray of the tile.
+/// The unit normal ∇F/|∇F| at each hit and touch, towards larger F whichever way the ray comes, and nothing new for other outcomes.
+/// Both slices hold something for each ray of the tile, the normals NaN where they are not known yet: others were found on the way
+/// by [`Tracer::trace_tile`] and stay.
 ///
 /// A `tracer` for the surface may know [shorter formulas](Tracer::gradients_on) around neighbouring rays, which give the same normals.
 ///
 /// At a touch, and where the gradient vanishes or is no finite vector, the normal is a limit: that of the points in front of the hit, on
 /// the side that the ray comes from, the nearest that has one. So a double root such as (x² + y² + z² − 1)² = 0 has the
-/// normal of the side that is seen. NaN when no point up to 2⁻¹⁰ of the ray's way in front has one either.
+/// normal of the side that is seen. It stays NaN when no point up to 2⁻¹⁰ of the ray's way in front has one either.
 ///
 /// # Errors
 /// When the engine cannot compile the gradient.
 pub fn normals(
-    surface: &Surface,
-    tracer: Option<&dyn Tracer>,
-    workspace: &mut Workspace,
-    tile: Tile<'_>,
-    outcomes: &[Outcome],
-    normals: &mut [DVec3],
-) -> Result<(), CompileError> {
-    normals.fill(DVec3::NAN);
-    other_normals(surface, tracer, workspace, tile, outcomes, normals)
-}
-
-/// Those [normals] that are not known yet, which hold NaN: others were found on the way by [`Tracer::trace_tile`].
-///
-/// # Errors
-/// When the engine cannot compile the gradient.
-pub fn other_normals(
     surface: &Surface,
     tracer: Option<&dyn Tracer>,
     workspace: &mut Workspace,

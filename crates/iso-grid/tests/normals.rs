@@ -31,7 +31,7 @@ fn what_is_left_of_a_formula_has_the_normals_of_all_of_it() {
     let mut outcomes = vec![Outcome::Miss; tile.len()];
     tracer.trace_tile(&mut workspace, tile, &mut outcomes, None);
     let mut found = |tracer: Option<&dyn Tracer>| {
-        let mut found = vec![DVec3::ZERO; tile.len()];
+        let mut found = vec![DVec3::NAN; tile.len()];
         normals(&surface, tracer, &mut workspace, tile, &outcomes, &mut found).unwrap();
         found
     };
@@ -73,7 +73,7 @@ fn normals_found_on_the_way_are_those_of_the_hits_and_change_no_outcome() {
         for raster in &rasters {
             let tile = Tile::of(raster, [-31.5, -31.5], 64, 64);
             let (outcomes, on_the_way) = traced(&tracer, tile);
-            let (mut alone, mut all) = (outcomes.clone(), on_the_way.clone());
+            let (mut alone, mut all) = (outcomes.clone(), vec![DVec3::NAN; tile.len()]);
             let mut workspace = Workspace::default();
             tracer.trace_tile(&mut workspace, tile, &mut alone, None);
             assert_eq!(outcomes, alone, "{formula}");

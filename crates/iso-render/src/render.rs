@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use glam::{DVec3, Vec3};
 use iso_expr::CompileError;
-use iso_grid::{Counters, Outcome, Surface, Tracer, Workspace, other_normals};
+use iso_grid::{Counters, Outcome, Surface, Tracer, Workspace};
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -183,7 +183,7 @@ impl Tile {
         let is_empty = self.counts.miss == rays.len() as u64;
         self.content = if is_empty { Content::Nothing } else { Content::Found };
         if are_normals_wanted && !is_empty {
-            other_normals(scene.surface, Some(scene.tracer), workspace, rays, outcomes, normals)?;
+            iso_grid::normals(scene.surface, Some(scene.tracer), workspace, rays, outcomes, normals)?;
         }
         if scene.plan.runs(Pass::Shade) {
             self.shade(scene.shading, rays, size);

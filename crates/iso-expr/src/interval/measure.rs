@@ -1,7 +1,7 @@
 //! Sizes and middles of intervals (IEEE 1788-2015, clause 10.5.9).
 
 use super::Interval;
-use super::rounding::{greater, lesser, round_up};
+use super::rounding::{greater, round_up};
 
 impl Interval {
     /// hi − lo, rounded up; +∞ when unbounded, NaN when empty.
@@ -34,12 +34,6 @@ impl Interval {
     pub fn magnitude(self) -> f64 {
         greater(self.lo.abs(), self.hi.abs())
     }
-
-    /// The least absolute value inside; NaN when empty.
-    #[inline]
-    pub fn mignitude(self) -> f64 {
-        if self.contains_zero() { 0.0 } else { lesser(self.lo.abs(), self.hi.abs()) }
-    }
 }
 
 #[cfg(test)]
@@ -55,27 +49,26 @@ mod tests {
 
     #[test]
     fn sizes_of_known_intervals() {
-        // interval, width, midpoint, magnitude, mignitude
+        // interval, width, midpoint, magnitude
         let cases = [
-            (interval(1.0, 1.0), 0.0, 1.0, 1.0, 1.0),
-            (interval(-2.0, -2.0), 0.0, -2.0, 2.0, 2.0),
-            (interval(0.0, 0.0), 0.0, 0.0, 0.0, 0.0),
-            (interval(TINY, TINY), 0.0, TINY, TINY, TINY),
-            (interval(-1.0, 3.0), 4.0f64.next_up(), 1.0, 3.0, 0.0),
-            (interval(-3.0, -1.0), 2.0f64.next_up(), -2.0, 3.0, 1.0),
-            (interval(f64::MIN, f64::MAX), INFINITY, 0.0, f64::MAX, 0.0),
-            (interval(5.0, INFINITY), INFINITY, f64::MAX, INFINITY, 5.0),
-            (interval(-INFINITY, 5.0), INFINITY, f64::MIN, INFINITY, 0.0),
-            (Interval::ENTIRE, INFINITY, 0.0, INFINITY, 0.0),
+            (interval(1.0, 1.0), 0.0, 1.0, 1.0),
+            (interval(-2.0, -2.0), 0.0, -2.0, 2.0),
+            (interval(0.0, 0.0), 0.0, 0.0, 0.0),
+            (interval(TINY, TINY), 0.0, TINY, TINY),
+            (interval(-1.0, 3.0), 4.0f64.next_up(), 1.0, 3.0),
+            (interval(-3.0, -1.0), 2.0f64.next_up(), -2.0, 3.0),
+            (interval(f64::MIN, f64::MAX), INFINITY, 0.0, f64::MAX),
+            (interval(5.0, INFINITY), INFINITY, f64::MAX, INFINITY),
+            (interval(-INFINITY, 5.0), INFINITY, f64::MIN, INFINITY),
+            (Interval::ENTIRE, INFINITY, 0.0, INFINITY),
         ];
-        for (given, width, midpoint, magnitude, mignitude) in cases {
+        for (given, width, midpoint, magnitude) in cases {
             assert_eq!(given.width(), width, "width of {given}");
             assert_eq!(given.midpoint(), midpoint, "midpoint of {given}");
             assert_eq!(given.magnitude(), magnitude, "magnitude of {given}");
-            assert_eq!(given.mignitude(), mignitude, "mignitude of {given}");
         }
         let empty = Interval::EMPTY;
-        for value in [empty.width(), empty.midpoint(), empty.radius(), empty.magnitude(), empty.mignitude()] {
+        for value in [empty.width(), empty.midpoint(), empty.radius(), empty.magnitude()] {
             assert!(value.is_nan());
         }
     }

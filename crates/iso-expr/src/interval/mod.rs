@@ -98,15 +98,6 @@ impl Interval {
         self.is_empty() | ((other.lo <= self.lo) & (self.hi <= other.hi))
     }
 
-    /// Whether every number of this interval is in `other` and none of them at an end of it (IEEE 1788-2015, clause
-    /// 10.5.10: an infinite end lies inside an infinite end).
-    #[inline]
-    pub fn is_interior_to(self, other: Self) -> bool {
-        let above = (other.lo < self.lo) | (other.lo == f64::NEG_INFINITY);
-        let below = (self.hi < other.hi) | (other.hi == f64::INFINITY);
-        self.is_empty() | (!other.is_empty() & above & below)
-    }
-
     /// The numbers that are in both.
     #[inline]
     pub fn intersection(self, other: Self) -> Self {

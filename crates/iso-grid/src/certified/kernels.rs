@@ -1,16 +1,14 @@
 //! The kernels that proofs are made of.
 
-use std::hash::BuildHasher;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::Arc;
 
 use glam::DVec3;
 use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::{
     BatchKernel, BoxKernel, CompileError, Decorated, Decoration, Extreme, Interval, Program, Scratch,
 };
-use rustc_hash::{FxBuildHasher, FxHashMap};
 
+use super::formula::{Formula, Formulas, compiled};
 use crate::{Kernel, Surface};
 
 /// How many boxes are enclosed by one call at most.
@@ -18,14 +16,6 @@ pub(super) const BATCH: usize = 8;
 
 /// About how much longer an operation takes at points in kernels that are made for few runs, where it is interpreted.
 const MUCH_LESS: u64 = 4;
-
-/// How many operations the programs of all places may have together.
-const ROOM: u64 = 1 << 23;
-
-/// After so many operations by kernels made for few runs, for each of its own operations, a formula would better have been compiled at
-/// once: that takes about a quarter of a millisecond for each. Measured: to wait four times as long takes half as long again for a gyroid in a ball,
-/// and to wait a quarter as long a tenth more for a union of a hundred balls.
-const OFTEN: u64 = 1 << 17;
 
 /// An axis-parallel box.
 pub(super) type Bounds = [Interval; 3];
@@ -42,151 +32,6 @@ pub(super) struct Kernels {
     formula: Arc<Formula>,
     /// Where they hold.
     domain: Bounds,
-}
-
-/// F, or what it comes to in some places: a function with the same signs there.
-pub(super) struct Formula {
-    /// Compiled before, or not to be compiled as long as it is seldom asked for.
-    surface: Arc<Surface>,
-    /// The same as native code, if it was asked for often.
-    compiled: OnceLock<Arc<Surface>>,
-    /// Before it is compiled.
-    patience: Patience,
-    /// Before each kernel is compiled that is not compiled ahead.
-    patience_for: [Patience; Kernel::ALL.len()],
-    has_branches: bool,
-    /// What is left of it in places must have so many operations to have forms. These take long to make, and pay where rays of many places
-    /// ask for the same ones.
-    least_with_forms: usize,
-    /// Whether its forms are asked for. That depends on the formula alone, so that all engines prove the same.
-    has_forms: bool,
-    /// How many operations each kernel takes, counted when first asked for.
-    operations: [OnceLock<u64>; Kernel::ALL.len()],
-    /// Those of which it is the least or the greatest everywhere, found when first asked for; `None` when it is no such thing.
-    faces: OnceLock<Option<(Extreme, Vec<Arc<Formula>>)>>,
-}
-
-/// What F comes to in some places, shared wherever it is the same.
-pub(super) struct Formulas {
-    /// By the hashes of their programs.
-    known: Mutex<FxHashMap<u64, Vec<Arc<Formula>>>>,
-    /// How many operations may still be kept.
-    room: AtomicU64,
-}
-
-/// None so far.
-impl Default for Formulas {
-    fn default() -> Self {
-        Self { known: Mutex::default(), room: AtomicU64::new(ROOM) }
-    }
-}
-
-impl Formulas {
-    /// The one with this program, which is what is left of `outer`. It is kept while there is room.
-    fn one_of(&self, program: Program, outer: &Formula) -> Arc<Formula> {
-        let hash = FxBuildHasher.hash_one(&program);
-        // Formulas are only ever put in whole.
-        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        let alike = known.entry(hash).or_default();
-        if let Some(formula) = alike.iter().find(|formula| *formula.surface.program() == program) {
-            return Arc::clone(formula);
-        }
-        let operations = program.operations() as u64;
-        let patience = Patience::limited(&program);
-        let surface = outer.surface.reduced_to(program);
-        let formula = Arc::new(Formula::new(surface, patience, outer.least_with_forms));
-        if self.have_room() {
-            self.room.update(Ordering::Relaxed, Ordering::Relaxed, |room| room.saturating_sub(operations));
-            alike.push(Arc::clone(&formula));
-        }
-        formula
-    }
-
-    /// Whether more may be kept.
-    pub(super) fn have_room(&self) -> bool {
-        self.room.load(Ordering::Relaxed) > 0
-    }
-}
-
-/// How many operations may still be asked for before something is compiled.
-struct Patience(AtomicU64);
-
-impl Patience {
-    /// As long as something is not asked for often.
-    fn limited(program: &Program) -> Self {
-        Self(AtomicU64::new(OFTEN * program.operations().max(1) as u64))
-    }
-
-    /// It is never to be compiled.
-    fn endless() -> Self {
-        Self(AtomicU64::new(u64::MAX))
-    }
-
-    fn is_endless(&self) -> bool {
-        self.0.load(Ordering::Relaxed) == u64::MAX
-    }
-
-    fn is_spent(&self) -> bool {
-        self.0.load(Ordering::Relaxed) == 0
-    }
-
-    /// Notes that so many operations were asked for; says once that it is enough.
-    fn wear(&self, operations: u64) -> bool {
-        let before = self.0.load(Ordering::Relaxed);
-        if before == u64::MAX || before == 0 {
-            return false;
-        }
-        // It does not matter if threads that come by at once forget each other's operations; one of them takes the last.
-        let after = before.saturating_sub(operations);
-        let is_first = self.0.compare_exchange(before, after, Ordering::Relaxed, Ordering::Relaxed).is_ok();
-        after == 0 && is_first
-    }
-}
-
-impl Formula {
-    fn new(surface: Surface, patience: Patience, least_with_forms: usize) -> Self {
-        let program = surface.program();
-        let has_branches = program.has_branches();
-        Self {
-            least_with_forms,
-            has_forms: program.operations() >= least_with_forms && Kernel::Forms.pays(program),
-            patience_for: Kernel::ALL.map(|_| Patience::limited(surface.program())),
-            surface: Arc::new(surface),
-            compiled: OnceLock::new(),
-            patience,
-            has_branches,
-            operations: Default::default(),
-            faces: OnceLock::new(),
-        }
-    }
-
-    /// What is to be called: both say the same, bit for bit.
-    fn surface(&self) -> &Surface {
-        self.compiled.get().unwrap_or(&self.surface)
-    }
-
-    /// Notes that so many operations of a kernel were asked for.
-    fn wear(&self, kernel: Kernel, operations: u64) {
-        if self.patience.wear(operations) {
-            let surface = self.surface.compiled_for_many_runs();
-            if Kernel::of_proofs(self.has_forms).all(|kernel| surface.compile(kernel).is_ok()) {
-                self.compiled.get_or_init(|| Arc::new(surface));
-                Kernel::ALL.into_iter().for_each(|kernel| self.compile_if_often(kernel));
-            }
-        }
-        if !kernel.is_compiled_ahead(self.has_forms) && self.patience_for[kernel as usize].wear(operations) {
-            self.compile_if_often(kernel);
-        }
-    }
-
-    /// Compiles a kernel that was asked for often, if those are that are compiled ahead.
-    fn compile_if_often(&self, kernel: Kernel) {
-        let is_native = self.compiled.get().is_some() || self.patience.is_endless();
-        if is_native && self.patience_for[kernel as usize].is_spent() {
-            // Where it cannot be compiled it stays as it is.
-            let _ = self.surface().compile(kernel);
-        }
-    }
 }
 
 /// F over a box, and its derivatives along the axes.
@@ -206,19 +51,7 @@ impl Kernels {
     /// # Errors
     /// When the engine cannot compile one.
     pub(super) fn of(surface: &Surface) -> Result<Self, CompileError> {
-        let program = surface.program();
-        let least_with_forms = match program.operations() {
-            operations if operations > Kernel::WITH_FORMS => usize::MAX,
-            operations if Kernel::are_left_to_places(program) => operations / 2,
-            _ => 0,
-        };
-        let formula = if Kernel::are_left_to_places(program) {
-            Formula::new(surface.made_for_few_runs(), Patience::limited(program), least_with_forms)
-        } else {
-            let has_forms = Kernel::Forms.pays(program);
-            Kernel::of_proofs(has_forms).try_for_each(|kernel| surface.compile(kernel))?;
-            Formula::new(surface.clone(), Patience::endless(), least_with_forms)
-        };
+        let formula = Formula::everywhere(surface)?;
         Ok(Self { formula: Arc::new(formula), domain: [Interval::ENTIRE; 3] })
     }
 
@@ -231,12 +64,7 @@ impl Kernels {
 
     /// Kernels of those of which F is the least or the greatest wherever these hold, if it is a minimum or a maximum there.
     pub(super) fn faces(&self, formulas: &Formulas) -> Option<(Extreme, Vec<Self>)> {
-        let faces = self.formula.faces.get_or_init(|| {
-            let (extreme, programs) = self.program().extreme_of()?;
-            let faces = programs.into_iter().map(|program| formulas.one_of(program, &self.formula));
-            Some((extreme, faces.collect()))
-        });
-        let (extreme, faces) = faces.as_ref()?;
+        let (extreme, faces) = self.formula.faces(formulas)?;
         let kernels = |face: &Arc<Formula>| Self { formula: Arc::clone(face), domain: self.domain };
         Some((*extreme, faces.iter().map(kernels).collect()))
     }
@@ -249,13 +77,12 @@ impl Kernels {
 
     /// Whether there is anything that a box may decide.
     pub(super) fn may_be_shortened(&self) -> bool {
-        self.formula.has_branches
+        self.formula.has_branches()
     }
 
     /// How many operations a kernel takes.
     pub(super) fn operations(&self, kernel: Kernel) -> u64 {
-        let Formula { operations, surface, .. } = &*self.formula;
-        *operations[kernel as usize].get_or_init(|| surface.program_of(kernel).operations() as u64)
+        self.formula.operations(kernel)
     }
 
     /// Notes that a kernel is asked for so many points or boxes, and says how many operations that takes.
@@ -266,7 +93,7 @@ impl Kernels {
     }
 
     pub(super) fn program(&self) -> &Program {
-        self.formula.surface.program()
+        self.formula.program()
     }
 
     /// One of the kernels over points.
@@ -279,7 +106,7 @@ impl Kernels {
     pub(super) fn gradients_at_points(&self, others: &Self) -> Option<Arc<dyn BatchKernel>> {
         let [these, those] = [self, others].map(|kernels| kernels.operations(Kernel::Gradients));
         let pays = MUCH_LESS * these <= those || Kernel::are_left_to_places(others.program());
-        pays.then(|| Arc::clone(compiled(self.formula.surface.gradients())))
+        pays.then(|| Arc::clone(compiled(self.formula.seldom().gradients())))
     }
 
     /// F over boxes.
@@ -289,25 +116,17 @@ impl Kernels {
 
     /// F with its gradient over boxes.
     pub(super) fn gradients(&self) -> &dyn BoxKernel {
-        self.made_for(Kernel::GradientEnclosures)
+        self.formula.over_boxes(Kernel::GradientEnclosures)
     }
 
     /// One of the kernels over boxes; `None` where it does not pay.
     pub(super) fn over_boxes(&self, kernel: Kernel) -> Option<&dyn BoxKernel> {
-        kernel.pays(self.program()).then(|| self.made_for(kernel))
-    }
-
-    /// A kernel over boxes: compiled, or made for few runs as long as it is seldom asked for. Both say the same, bit for bit.
-    fn made_for(&self, kernel: Kernel) -> &dyn BoxKernel {
-        let Formula { has_forms, surface: seldom, .. } = &*self.formula;
-        let surface = self.formula.surface();
-        let native = kernel.is_compiled_ahead(*has_forms) || surface.is_compiled(kernel);
-        &**if native { compiled(surface.over_boxes(kernel)) } else { seldom.for_few_runs(kernel) }
+        kernel.pays(self.program()).then(|| self.formula.over_boxes(kernel))
     }
 
     /// The affine forms of F and its derivatives, by one of the kernels of forms, where that pays.
     pub(super) fn forms(&self, kernel: Kernel) -> Option<&dyn BatchKernel> {
-        self.formula.has_forms.then(|| self.over_points(kernel))
+        self.formula.has_forms().then(|| self.over_points(kernel))
     }
 
     /// The corners of the box on which they hold.
@@ -337,10 +156,6 @@ impl Kernels {
         }
         jets
     }
-}
-
-fn compiled<K>(kernel: Result<K, CompileError>) -> K {
-    kernel.expect("native code was compiled before, and the interpreter takes any program")
 }
 
 /// What a kernel wrote for a batch: output `k` of box `i` of `n` stands at `k·n + i`.

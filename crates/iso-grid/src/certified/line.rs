@@ -130,7 +130,7 @@ mod tests {
 
     use super::*;
     use crate::Surface;
-    use crate::certified::kernels::Formulas;
+    use crate::certified::formula::Formulas;
 
     /// Where y is positive x is left of a minimum, which has its sign but not its values.
     #[test]

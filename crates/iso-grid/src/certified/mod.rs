@@ -4,6 +4,7 @@ mod beams;
 mod cells;
 mod classify;
 mod clip;
+mod formula;
 mod isolate;
 mod kernels;
 mod line;

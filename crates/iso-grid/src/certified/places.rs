@@ -6,7 +6,8 @@ use glam::DVec3;
 use iso_expr::{Extreme, Interval};
 use rustc_hash::FxHashMap;
 
-use super::kernels::{Bounds, Formulas, Kernels, bounds_between};
+use super::formula::Formulas;
+use super::kernels::{Bounds, Kernels, bounds_between};
 use crate::Region;
 
 /// How often the region is halved along each axis at most.

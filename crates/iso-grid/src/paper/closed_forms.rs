@@ -54,7 +54,7 @@ fn check(surface: &Surface, region: Region, expected: impl Fn(&Ray) -> Option<(f
     for tracer in methods(surface, region, 25) {
         let mut workspace = Workspace::default();
         let mut outcomes = vec![Outcome::Miss; rays.len()];
-        let mut found = vec![DVec3::ZERO; rays.len()];
+        let mut found = vec![DVec3::NAN; rays.len()];
         tracer.trace(&mut workspace, &rays, &mut outcomes);
         workspace.counters.gradient_evaluations = 0;
         normals(surface, None, &mut workspace, rays.as_slice().into(), &outcomes, &mut found).unwrap();
@@ -121,7 +121,7 @@ fn torus_from_above() {
             let outcome = trace(&*tracer, ray);
             let height = (tube * tube - (radius - ring).powi(2)).sqrt();
             assert!((the_hit(outcome).t - (5.0 - height) / 2.0).abs() < 1e-14);
-            let mut found = [DVec3::ZERO];
+            let mut found = [DVec3::NAN];
             normals(
                 &surface,
                 None,

@@ -168,7 +168,7 @@ fn rays_that_are_no_rays_are_missed() {
 /// The normal where a ray along x from x = −2 meets a surface.
 fn normal_along_x(value: Function, gradient: fn(DVec3) -> DVec3, outcome: Outcome) -> DVec3 {
     let ray = Ray { origin: DVec3::new(-2.0, 0.0, 0.0), direction: DVec3::X };
-    let mut found = [DVec3::ZERO];
+    let mut found = [DVec3::NAN];
     normals(
         &surface(value, gradient),
         None,

@@ -68,7 +68,7 @@ pub(super) fn ln(x: f64, [inverse, logarithm, logarithm_lo]: [f64; 3]) -> Approx
     let derivative = r.mul_add(r - 1.0, 1.0);
     let small = product.lo.mul_add(derivative, k.mul_add(LN_2[1], logarithm_lo));
     let small = (r * r * r).mul_add(tail, half_square.lo + small);
-    let is_covered = (x >= f64::MIN_POSITIVE) & (x < f64::INFINITY);
+    let is_covered = (f64::MIN_POSITIVE..f64::INFINITY).contains(&x);
     let error = if is_covered { hi.abs() * 2f64.powi(-60) } else { f64::INFINITY };
     Approximation { hi, lo: lo + (first.lo + small), error }
 }

@@ -10,7 +10,7 @@ use rayon::ThreadPool;
 
 use super::shots::{Shot, Subject, shots};
 use crate::camera::camera;
-use crate::clock::add_to;
+use crate::clock::{Phases, add_to};
 use crate::engine::{engine, threads};
 use crate::failure::Failure;
 use crate::flags::RenderFlags;
@@ -42,6 +42,19 @@ pub(super) struct Request {
 struct Prepared {
     subject: Arc<Subject>,
     tracer: Box<dyn Tracer>,
+}
+
+impl Prepared {
+    /// Compiles what the plan names and prepares the method. `None` when work is stopped before that is done.
+    fn new(subject: &Arc<Subject>, region: Region, phases: &mut Phases) -> Result<Option<Self>, Failure> {
+        let Subject { surface, plan, .. } = &**subject;
+        add_to(&mut phases.compile, || plan.compile(surface))?;
+        let tracer = add_to(&mut phases.preprocess, || plan.tracer(surface, region));
+        match tracer {
+            Err(GridError::Stopped) => Ok(None),
+            tracer => Ok(Some(Self { subject: Arc::clone(subject), tracer: tracer? })),
+        }
+    }
 }
 
 impl Request {
@@ -158,14 +171,9 @@ impl Request {
         let known = match known {
             Some(known) => known,
             None => {
-                add_to(&mut phases.compile, || plan.compile(surface))?;
-                let tracer = add_to(&mut phases.preprocess, || plan.tracer(surface, region));
-                let tracer = match tracer {
-                    Err(GridError::Stopped) => return Ok(None),
-                    tracer => tracer?,
-                };
-                counters += tracer.preprocessing();
-                Prepared { subject: Arc::clone(&subject), tracer }
+                let Some(new) = Prepared::new(&subject, region, &mut phases)? else { return Ok(None) };
+                counters += new.tracer.preprocessing();
+                new
             }
         };
         let shading = Shading::new(&camera, self.shows_status);
@@ -186,15 +194,9 @@ impl Request {
         phases.shade += 1e3 * picture.shade_seconds;
         counters += picture.counters;
         add_to(&mut phases.encode, || files.write(picture))?;
-        let drawn = Drawn {
-            surface,
-            fitted,
-            camera: &camera,
-            size: self.drawn,
-            pixels: picture.counts,
-            shows_status: self.shows_status,
-        };
-        let summary = Summary {
+        let (size, pixels, shows_status) = (self.drawn, picture.counts, self.shows_status);
+        let drawn = Drawn { surface, fitted, camera: &camera, size, pixels, shows_status };
+        Ok(Some(Summary {
             files: files.names(),
             frame,
             width: picture.size.width(),
@@ -210,11 +212,10 @@ impl Request {
                 .then(|| surface.program_of(Kernel::Gradients).operations()),
             plan: PlanReport::new(plan, surface, *operations_before)
                 .after(kernels_compiled(surface) - kernels_before),
-            pixels: picture.counts,
+            pixels,
             counters,
             milliseconds: phases,
             notes: drawn.notes()?,
-        };
-        Ok(Some(summary))
+        }))
     }
 }

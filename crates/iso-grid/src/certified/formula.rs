@@ -1,0 +1,225 @@
+//! F, and what it comes to in places: functions whose kernels are compiled when they were asked for often.
+
+use std::hash::BuildHasher;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use iso_expr::{BoxKernel, CompileError, Extreme, Program};
+use rustc_hash::{FxBuildHasher, FxHashMap};
+
+use crate::{Kernel, Surface};
+
+/// How many operations the programs of all places may have together.
+const ROOM: u64 = 1 << 23;
+
+/// After so many operations by kernels made for few runs, for each of its own operations, a formula would better have been compiled at
+/// once: that takes about a quarter of a millisecond for each. Measured: to wait four times as long takes half as long again for a gyroid in a ball,
+/// and to wait a quarter as long a tenth more for a union of a hundred balls.
+const OFTEN: u64 = 1 << 17;
+
+/// F, or what it comes to in some places: a function with the same signs there.
+pub(super) struct Formula {
+    /// Compiled before, or not to be compiled as long as it is seldom asked for.
+    surface: Arc<Surface>,
+    /// The same as native code, if it was asked for often.
+    compiled: OnceLock<Arc<Surface>>,
+    /// Before it is compiled.
+    patience: Patience,
+    /// Before each kernel is compiled that is not compiled ahead.
+    patience_for: [Patience; Kernel::ALL.len()],
+    has_branches: bool,
+    /// What is left of it in places must have so many operations to have forms. These take long to make, and pay where rays of many places
+    /// ask for the same ones.
+    least_with_forms: usize,
+    /// Whether its forms are asked for. That depends on the formula alone, so that all engines prove the same.
+    has_forms: bool,
+    /// How many operations each kernel takes, counted when first asked for.
+    operations: [OnceLock<u64>; Kernel::ALL.len()],
+    /// Those of which it is the least or the greatest everywhere, found when first asked for; `None` when it is no such thing.
+    faces: OnceLock<Option<(Extreme, Vec<Arc<Formula>>)>>,
+}
+
+/// What F comes to in some places, shared wherever it is the same.
+pub(super) struct Formulas {
+    /// By the hashes of their programs.
+    known: Mutex<FxHashMap<u64, Vec<Arc<Formula>>>>,
+    /// How many operations may still be kept.
+    room: AtomicU64,
+}
+
+/// None so far.
+impl Default for Formulas {
+    fn default() -> Self {
+        Self { known: Mutex::default(), room: AtomicU64::new(ROOM) }
+    }
+}
+
+impl Formulas {
+    /// The one with this program, which is what is left of `outer`. It is kept while there is room.
+    pub(super) fn one_of(&self, program: Program, outer: &Formula) -> Arc<Formula> {
+        let hash = FxBuildHasher.hash_one(&program);
+        // Formulas are only ever put in whole.
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let alike = known.entry(hash).or_default();
+        if let Some(formula) = alike.iter().find(|formula| *formula.surface.program() == program) {
+            return Arc::clone(formula);
+        }
+        let operations = program.operations() as u64;
+        let patience = Patience::limited(&program);
+        let surface = outer.surface.reduced_to(program);
+        let formula = Arc::new(Formula::new(surface, patience, outer.least_with_forms));
+        if self.have_room() {
+            self.room.update(Ordering::Relaxed, Ordering::Relaxed, |room| room.saturating_sub(operations));
+            alike.push(Arc::clone(&formula));
+        }
+        formula
+    }
+
+    /// Whether more may be kept.
+    pub(super) fn have_room(&self) -> bool {
+        self.room.load(Ordering::Relaxed) > 0
+    }
+}
+
+/// How many operations may still be asked for before something is compiled.
+struct Patience(AtomicU64);
+
+impl Patience {
+    /// As long as something is not asked for often.
+    fn limited(program: &Program) -> Self {
+        Self(AtomicU64::new(OFTEN * program.operations().max(1) as u64))
+    }
+
+    /// It is never to be compiled.
+    fn endless() -> Self {
+        Self(AtomicU64::new(u64::MAX))
+    }
+
+    fn is_endless(&self) -> bool {
+        self.0.load(Ordering::Relaxed) == u64::MAX
+    }
+
+    fn is_spent(&self) -> bool {
+        self.0.load(Ordering::Relaxed) == 0
+    }
+
+    /// Notes that so many operations were asked for; says once that it is enough.
+    fn wear(&self, operations: u64) -> bool {
+        let before = self.0.load(Ordering::Relaxed);
+        if before == u64::MAX || before == 0 {
+            return false;
+        }
+        // It does not matter if threads that come by at once forget each other's operations; one of them takes the last.
+        let after = before.saturating_sub(operations);
+        let is_first = self.0.compare_exchange(before, after, Ordering::Relaxed, Ordering::Relaxed).is_ok();
+        after == 0 && is_first
+    }
+}
+
+impl Formula {
+    /// F everywhere: native code, unless it is [left to places](Kernel::are_left_to_places).
+    ///
+    /// # Errors
+    /// When the engine cannot compile a kernel.
+    pub(super) fn everywhere(surface: &Surface) -> Result<Self, CompileError> {
+        let program = surface.program();
+        let (is_too_large, operations) = (program.operations() > Kernel::WITH_FORMS, program.operations());
+        if Kernel::are_left_to_places(program) {
+            let least_with_forms = if is_too_large { usize::MAX } else { operations / 2 };
+            return Ok(Self::new(surface.made_for_few_runs(), Patience::limited(program), least_with_forms));
+        }
+        let least_with_forms = if is_too_large { usize::MAX } else { 0 };
+        Kernel::of_proofs(Kernel::Forms.pays(program)).try_for_each(|kernel| surface.compile(kernel))?;
+        Ok(Self::new(surface.clone(), Patience::endless(), least_with_forms))
+    }
+
+    fn new(surface: Surface, patience: Patience, least_with_forms: usize) -> Self {
+        let program = surface.program();
+        let has_branches = program.has_branches();
+        Self {
+            least_with_forms,
+            has_forms: program.operations() >= least_with_forms && Kernel::Forms.pays(program),
+            patience_for: Kernel::ALL.map(|_| Patience::limited(surface.program())),
+            surface: Arc::new(surface),
+            compiled: OnceLock::new(),
+            patience,
+            has_branches,
+            operations: Default::default(),
+            faces: OnceLock::new(),
+        }
+    }
+
+    pub(super) fn program(&self) -> &Program {
+        self.surface.program()
+    }
+
+    /// Whether there is anything that a box may decide.
+    pub(super) fn has_branches(&self) -> bool {
+        self.has_branches
+    }
+
+    /// Whether its forms are asked for.
+    pub(super) fn has_forms(&self) -> bool {
+        self.has_forms
+    }
+
+    /// How many operations a kernel takes.
+    pub(super) fn operations(&self, kernel: Kernel) -> u64 {
+        let operations = || self.surface.program_of(kernel).operations() as u64;
+        *self.operations[kernel as usize].get_or_init(operations)
+    }
+
+    /// Those of which it is the least or the greatest everywhere, if it is a minimum or a maximum.
+    pub(super) fn faces(&self, formulas: &Formulas) -> Option<&(Extreme, Vec<Arc<Self>>)> {
+        let find = || {
+            let (extreme, programs) = self.program().extreme_of()?;
+            Some((extreme, programs.into_iter().map(|program| formulas.one_of(program, self)).collect()))
+        };
+        self.faces.get_or_init(find).as_ref()
+    }
+
+    /// A kernel over boxes: compiled, or made for few runs as long as it is seldom asked for. Both say the same, bit for bit.
+    pub(super) fn over_boxes(&self, kernel: Kernel) -> &dyn BoxKernel {
+        let surface = self.surface();
+        let is_native = kernel.is_compiled_ahead(self.has_forms) || surface.is_compiled(kernel);
+        &**if is_native { compiled(surface.over_boxes(kernel)) } else { self.surface.for_few_runs(kernel) }
+    }
+
+    /// F as it is called while it is seldom asked for.
+    pub(super) fn seldom(&self) -> &Surface {
+        &self.surface
+    }
+
+    /// What is to be called: both say the same, bit for bit.
+    pub(super) fn surface(&self) -> &Surface {
+        self.compiled.get().unwrap_or(&self.surface)
+    }
+
+    /// Notes that so many operations of a kernel were asked for.
+    pub(super) fn wear(&self, kernel: Kernel, operations: u64) {
+        if self.patience.wear(operations) {
+            let surface = self.surface.compiled_for_many_runs();
+            if Kernel::of_proofs(self.has_forms).all(|kernel| surface.compile(kernel).is_ok()) {
+                self.compiled.get_or_init(|| Arc::new(surface));
+                Kernel::ALL.into_iter().for_each(|kernel| self.compile_if_often(kernel));
+            }
+        }
+        if !kernel.is_compiled_ahead(self.has_forms) && self.patience_for[kernel as usize].wear(operations) {
+            self.compile_if_often(kernel);
+        }
+    }
+
+    /// Compiles a kernel that was asked for often, if those are that are compiled ahead.
+    fn compile_if_often(&self, kernel: Kernel) {
+        let is_native = self.compiled.get().is_some() || self.patience.is_endless();
+        if is_native && self.patience_for[kernel as usize].is_spent() {
+            // Where it cannot be compiled it stays as it is.
+            let _ = self.surface().compile(kernel);
+        }
+    }
+}
+
+/// A kernel that there must be.
+pub(super) fn compiled<K>(kernel: Result<K, CompileError>) -> K {
+    kernel.expect("native code was compiled before, and the interpreter takes any program")
+}
