@@ -22,6 +22,6 @@ pub use engine::{BatchKernel, BoxKernel, CompileError, Engine, PointKernel, Scra
 pub use interpreter::Interpreter;
 pub use interval::{Decorated, Decoration, Extension, Interval};
 pub use language::{Ast, Formula, FormulaError, FormulaErrorKind, decode};
-pub use operation::{Chain, Operation, Value};
+pub use operation::{Chain, Operation, Value, by_squaring};
 pub use pieces::Pieces;
 pub use program::{Argument, Axis, Extreme, Node, NodeId, Program};

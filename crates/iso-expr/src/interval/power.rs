@@ -2,6 +2,7 @@
 
 use super::rounding::{greater, lesser, round_down, round_up};
 use super::{Decorated, Decoration, Interval};
+use crate::operation::by_squaring;
 
 impl Interval {
     /// The squares of this interval's numbers. At most one ulp wider at each end than the tightest.
@@ -50,22 +51,10 @@ fn power_up(base: f64, exponent: u32) -> f64 {
     if (base == 0.0) & (exponent > 0) { 0.0 } else { power_rounded(base, exponent, round_up) }
 }
 
-/// `base` multiplied by itself in the order of the operation's value: by squaring from the exponent's lowest bit up.
+/// `base` multiplied by itself in the order of the operation's value.
 #[inline]
 fn power_rounded(base: f64, exponent: u32, round: impl Fn(f64) -> f64) -> f64 {
-    let mut remaining = exponent;
-    let mut square = base;
-    let mut product = None;
-    loop {
-        if remaining & 1 == 1 {
-            product = Some(product.map_or(square, |product: f64| round(product * square)));
-        }
-        remaining >>= 1;
-        if remaining == 0 {
-            return product.unwrap_or(1.0);
-        }
-        square = round(square * square);
-    }
+    by_squaring(base, exponent, |a, b| round(a * b.unwrap_or(a))).unwrap_or(1.0)
 }
 
 /// The second operand is a constant, a positive integer.

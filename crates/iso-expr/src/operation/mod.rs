@@ -4,10 +4,12 @@
 //! variant to [`Operation`], a row to [`table`], its interval extension to [`crate::interval`], and cases to `testdata/`.
 
 mod derivative;
+mod squaring;
 mod table;
 pub(crate) mod value;
 
 pub use derivative::Chain;
+pub use squaring::by_squaring;
 use table::Row;
 pub use value::Value;
 

@@ -2,6 +2,8 @@
 //!
 //! The functions have the C calling convention so that native code calls the very same ones.
 
+use super::by_squaring;
+
 /// The value of an operation, by arity.
 #[derive(Clone, Copy, Debug)]
 pub enum Value {
@@ -69,23 +71,9 @@ fn truth(a: f64, b: f64, holds: bool) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { f64::from(u8::from(holds)) }
 }
 
-/// `base` multiplied by itself, by squaring from the exponent's lowest bit up: x⁶ = x²·x⁴.
-///
-/// This order is the definition; engines that write the products out follow it.
+/// `base` multiplied by itself [by squaring](by_squaring).
 pub(crate) extern "C" fn integer_power(base: f64, exponent: f64) -> f64 {
-    let mut remaining = exponent as u32;
-    let mut square = base;
-    let mut product = None;
-    loop {
-        if remaining & 1 == 1 {
-            product = Some(product.map_or(square, |product| product * square));
-        }
-        remaining >>= 1;
-        if remaining == 0 {
-            return product.unwrap_or(1.0);
-        }
-        square *= square;
-    }
+    by_squaring(base, exponent as u32, |a, b| a * b.unwrap_or(a)).unwrap_or(1.0)
 }
 
 /// The C function, but undefined for every negative base, and for an undefined base or exponent.

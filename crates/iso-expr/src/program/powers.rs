@@ -2,6 +2,7 @@
 
 use super::{Node, NodeId, Program};
 use crate::Operation;
+use crate::operation::by_squaring;
 
 impl Program {
     /// A copy in which every integer power is written out as products, in the order that defines its value: squares of the
@@ -19,21 +20,9 @@ impl Program {
     }
 
     fn products(&mut self, base: NodeId, exponent: NodeId) -> NodeId {
-        let mut remaining = self.exponent(exponent).expect("programs check the exponents of integer powers");
-        let mut square = base;
-        let mut product = None;
-        loop {
-            if remaining & 1 == 1 {
-                product = Some(match product {
-                    Some(product) => self.apply(Operation::Multiply, &[product, square]),
-                    None => square,
-                });
-            }
-            remaining >>= 1;
-            match product {
-                Some(product) if remaining == 0 => return product,
-                _ => square = self.apply(Operation::Multiply, &[square, square]),
-            }
-        }
+        let exponent = self.exponent(exponent).expect("programs check the exponents of integer powers");
+        let product =
+            by_squaring(base, exponent, |a, b| self.apply(Operation::Multiply, &[a, b.unwrap_or(a)]));
+        product.expect("exponents are positive")
     }
 }

@@ -7,7 +7,7 @@
 //! polynomial basis: a centennial retrospective', 2012).
 
 use iso_expr::interval::{round_down, round_up};
-use iso_expr::{Interval, Node, NodeId, Operation, Program};
+use iso_expr::{Interval, Node, NodeId, Operation, Program, by_squaring};
 
 /// A program that is a polynomial in x, y and z, as sums and products.
 #[derive(Debug)]
@@ -91,19 +91,7 @@ impl Polynomial {
     }
 
     fn power(&mut self, base: usize, exponent: u32) -> Option<usize> {
-        let (mut square, mut product) = (base, None);
-        for bit in 0..u32::BITS - exponent.leading_zeros() {
-            if bit > 0 {
-                square = self.push(Term::Product(square, square))?;
-            }
-            if exponent >> bit & 1 == 1 {
-                product = Some(match product {
-                    Some(product) => self.push(Term::Product(product, square))?,
-                    None => square,
-                });
-            }
-        }
-        product
+        by_squaring(Some(base), exponent, |a, b| self.push(Term::Product(a?, b.unwrap_or(a)?)))?
     }
 
     fn push(&mut self, term: Term) -> Option<usize> {

@@ -8,7 +8,7 @@ mod steps;
 
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{InstBuilder, Value};
-use iso_expr::{Decorated, Decoration, Operation};
+use iso_expr::{Decorated, Decoration, Operation, by_squaring};
 
 use crate::domain::Sign;
 use crate::lanes::{Mask, Writer};
@@ -160,23 +160,13 @@ fn greater(writer: &mut Writer<'_, '_>, p: Value, q: Value) -> Value {
     writer.choose(greater, p, q)
 }
 
-/// Each base multiplied by itself in the order that defines the operation's value, every product followed by what `multiply`
-/// does.
+/// Each base multiplied by itself [by squaring](by_squaring), every product made by `multiply`.
 fn powers(
     writer: &mut Writer<'_, '_>,
     base: Value,
     exponent: u32,
     multiply: impl Fn(&mut Writer<'_, '_>, Value, Value) -> Value,
 ) -> Value {
-    let (mut remaining, mut square, mut product) = (exponent, base, None);
-    loop {
-        if remaining & 1 == 1 {
-            product = Some(product.map_or(square, |product| multiply(writer, product, square)));
-        }
-        remaining >>= 1;
-        match product {
-            Some(product) if remaining == 0 => return product,
-            _ => square = multiply(writer, square, square),
-        }
-    }
+    let power = by_squaring(base, exponent, |u, v| multiply(writer, u, v.unwrap_or(u)));
+    power.expect("exponents are positive")
 }

@@ -1,6 +1,7 @@
 //! Sums, products and quotients of forms.
 
 use super::{Builder, Form, NodeId, Operation, TINY};
+use crate::operation::by_squaring;
 
 impl Builder {
     pub(super) fn sum(&mut self, x: Form, y: Form) -> Form {
@@ -72,18 +73,11 @@ impl Builder {
 
     /// An integer power from 2 on, by squares of the base.
     pub(super) fn power(&mut self, base: Form, exponent: u32) -> Form {
-        let (mut remaining, mut square) = (exponent, base);
-        let mut product: Option<Form> = None;
-        loop {
-            if remaining & 1 == 1 {
-                product = Some(product.map_or(square, |product| self.product(product, square)));
-            }
-            remaining >>= 1;
-            match product {
-                Some(product) if remaining == 0 => return product,
-                _ => square = self.square(square),
-            }
-        }
+        let power = by_squaring(base, exponent, |x, y| match y {
+            Some(y) => self.product(x, y),
+            None => self.square(x),
+        });
+        power.expect("exponents are positive")
     }
 
     /// x·y, or x where y is 1.
