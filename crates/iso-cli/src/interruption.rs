@@ -9,7 +9,7 @@ use iso_grid::Stop;
 
 use crate::failure::Failure;
 use crate::flags::LimitFlags;
-use crate::{output, report};
+use crate::{diagnostics, output};
 
 /// The exit code after Ctrl-C, by the custom of shells: 128 and the signal's number.
 pub(crate) const INTERRUPTED: u8 = 130;
@@ -103,7 +103,7 @@ impl Interruption {
         match *stage {
             Stage::Preparing => {
                 let failure = Failure::StoppedEarly { cause };
-                report::print(&failure);
+                diagnostics::print(&failure);
                 output::exit_between_files(failure.exit_code());
             }
             Stage::Working => {

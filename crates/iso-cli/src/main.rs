@@ -8,6 +8,7 @@ mod chart;
 mod clock;
 mod commands;
 mod comparison;
+mod diagnostics;
 mod engine;
 mod evaluation;
 mod failure;
@@ -29,7 +30,6 @@ mod rounding;
 mod scaling;
 mod stress;
 mod summary;
-mod sweep;
 mod table;
 mod values;
 
@@ -45,7 +45,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) if failure.is_closed_pipe() => ExitCode::SUCCESS,
         Err(failure) => {
-            report::print(&failure);
+            diagnostics::print(&failure);
             ExitCode::from(failure.exit_code())
         }
     }

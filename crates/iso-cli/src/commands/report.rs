@@ -21,8 +21,8 @@ use crate::measurement::Subject;
 use crate::method::region;
 use crate::output::{OutputFile, to_standard_output};
 use crate::progress::Progress;
+use crate::report::{Axes, Case, Report, Sweep, plots, scenes, write_page, write_table};
 use crate::scaling::{Family, Formula};
-use crate::sweep::{Axes, Case, Report, Sweep, plots, scenes, write_page, write_table};
 
 /// Measures all settings and writes the report.
 pub(crate) fn run(flags: ReportFlags) -> Result<(), Failure> {

@@ -33,7 +33,7 @@ impl Subdivision<'_> {
         for _ in 0..faces.len() {
             for (number, face) in faces.iter().enumerate() {
                 let mut on_face = std::mem::take(&mut pixels[number]);
-                self.pursue(&mut on_face, face.kernels, &face.arc, &mut ended);
+                self.pursue(&mut on_face, face.kernels, &face.bow, &mut ended);
                 for Ended { place, end } in ended.drain(..) {
                     match end {
                         End::Hit(hit) => self.go_on(part, faces, (place, number, hit), &mut pixels),
@@ -132,13 +132,13 @@ impl Subdivision<'_> {
             let mut course = face.bend.at(a, b);
             course.value_error += margin;
             let sign = face.sign(&course, hit.bracket).or_else(|| {
-                let margin = margin + face.arc.error() + (end - start) * face.steepest;
+                let margin = margin + face.bow.error() + (end - start) * face.steepest;
                 let value = self.value_at((column, row), hit.t, face.kernels);
                 (value.abs() > margin).then(|| value.signum())
             });
             match sign {
                 Some(sign) if sign < 0.0 => {}
-                Some(_) if face.arc.rises() => return Next::Nothing,
+                Some(_) if face.bow.rises() => return Next::Nothing,
                 Some(_) => return Next::Pursue(other),
                 None => return Next::Search,
             }
@@ -169,8 +169,8 @@ fn likely(faces: &[Face], (a, b): (f64, f64), stretch: Span) -> Next {
             Some(_) => continue,
             None => are_negative = false,
         }
-        let way = course.way_to_root(&face.arc);
-        if !face.arc.rises() && way > farthest {
+        let way = course.way_to_root(&face.bow);
+        if !face.bow.rises() && way > farthest {
             (last, farthest) = (Some(number), way);
         }
     }

@@ -5,8 +5,8 @@
 
 use iso_expr::Extreme;
 
-use super::arcs::{Arc, ways};
 use super::bend::{Bend, Course};
+use super::bows::{Bow, ways};
 use super::form::{Form, Gradient};
 use super::pixels::Pixel;
 use super::subdivision::{Part, Subdivision};
@@ -20,9 +20,9 @@ const MOST: usize = 4;
 pub(super) struct Face {
     /// The number of its kernels.
     pub(super) kernels: u32,
-    /// To second order, or its negative: as `arc` has it.
+    /// To second order, or its negative: as `bow` has it.
     pub(super) bend: Bend,
-    pub(super) arc: Arc,
+    pub(super) bow: Bow,
     /// What no slope along a ray exceeds.
     pub(super) steepest: f64,
 }
@@ -31,7 +31,7 @@ impl Face {
     /// The sign of the function itself where that is certain on a stretch of a ray on which it is `course`.
     #[inline]
     pub(super) fn sign(&self, course: &Course, stretch: Span) -> Option<f64> {
-        course.sign_between(ways(stretch, self.bend.t), &self.arc).map(|sign| sign * self.arc.sign)
+        course.sign_between(ways(stretch, self.bend.t), &self.bow).map(|sign| sign * self.bow.sign)
     }
 }
 
@@ -120,9 +120,9 @@ impl Subdivision<'_> {
             }
             if let Some(bend) = self.expand(part, (t, center), jet, kernels) {
                 let error = self.error_of_values(part, kernels)?;
-                let arc = Arc::new(&bend, form.slope, error, self.tolerance(part))?.falling()?;
-                let bend = if arc.sign < 0.0 { bend.negated() } else { bend };
-                let face = Face { kernels, bend, arc, steepest: form.slope.magnitude() };
+                let bow = Bow::new(&bend, form.slope, error, self.tolerance(part))?.falling()?;
+                let bend = if bow.sign < 0.0 { bend.negated() } else { bend };
+                let face = Face { kernels, bend, bow, steepest: form.slope.magnitude() };
                 return Some(Made::Of(Extreme::Least, vec![face]));
             }
         }
@@ -136,12 +136,12 @@ impl Subdivision<'_> {
         let course = face.bend.at(a, b);
         let ray = self.tile.ray(column, row);
         let reach = part.form.reach;
-        let mut pixel = Pixel::starting((place, ray), [wanted, reach], &course, &face.arc);
-        let way = course.way_to_root(&face.arc);
+        let mut pixel = Pixel::starting((place, ray), [wanted, reach], &course, &face.bow);
+        let way = course.way_to_root(&face.bow);
         if way.is_finite() {
             pixel.t = (pixel.t + way).max(reach.start).min(reach.end);
         }
-        (pixel, way, course.is_doubtful(way, ways(wanted, face.bend.t), &face.arc))
+        (pixel, way, course.is_doubtful(way, ways(wanted, face.bend.t), &face.bow))
     }
 }
 

@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 use glam::DVec3;
 use iso_expr::{Decorated, Interval};
 
-use super::arcs::{Arc, ways};
 use super::bend::Bend;
+use super::bows::{Bow, ways};
 use super::pixels::{Pixel, Verdict, halves_from};
 use super::subdivision::{Part, Subdivision};
 use crate::Kernel;
@@ -65,15 +65,15 @@ impl Subdivision<'_> {
         }
         let found = self.bend(part).and_then(|bend| {
             let error = self.error_of_values(part, part.kernels)?;
-            Some((bend, Arc::new(&bend, part.form.slope, error, self.tolerance(part))?))
+            Some((bend, Bow::new(&bend, part.form.slope, error, self.tolerance(part))?))
         });
         self.memory.attempts.note(size, found.is_some());
-        let Some((bend, arc)) = found else { return false };
-        let bend = if arc.sign < 0.0 { bend.negated() } else { bend };
+        let Some((bend, bow)) = found else { return false };
+        let bend = if bow.sign < 0.0 { bend.negated() } else { bend };
         let mut pixels = std::mem::take(&mut self.memory.bowed);
-        let count = self.start_bent(part, &bend, &arc, &mut pixels);
+        let count = self.start_bent(part, &bend, &bow, &mut pixels);
         if let Some(count) = count {
-            self.pursue_and_settle(&mut pixels[..count], part.kernels, &arc);
+            self.pursue_and_settle(&mut pixels[..count], part.kernels, &bow);
         }
         self.memory.bowed = pixels;
         count.is_some()
@@ -143,7 +143,7 @@ impl Subdivision<'_> {
 
     /// Puts the rays of a part that are still followed and may have a root there in front of `pixels`, and counts them; `None` when
     /// too many may be followed in vain.
-    fn start_bent(&mut self, part: &Part, bend: &Bend, arc: &Arc, pixels: &mut Vec<Pixel>) -> Option<usize> {
+    fn start_bent(&mut self, part: &Part, bend: &Bend, bow: &Bow, pixels: &mut Vec<Pixel>) -> Option<usize> {
         let beam = &self.memory.beams[part.beam as usize];
         let area = beam.area;
         let room = area.width * area.height;
@@ -160,7 +160,7 @@ impl Subdivision<'_> {
             let middle = (middle_column + across, middle_row + along);
             let stretch = ways(part.stretch, bend.t);
             let all = bend.around(middle, block.radii());
-            if all.sign_between(stretch, arc).is_some() {
+            if all.sign_between(stretch, bow).is_some() {
                 continue;
             }
             for (row, b) in block.rows().zip(halves_from(middle_row)) {
@@ -174,12 +174,12 @@ impl Subdivision<'_> {
                         (place, self.tile.ray(column, row)),
                         [part.stretch, part.form.reach],
                         &course,
-                        arc,
+                        bow,
                     );
-                    match pixel.judge(course, arc) {
+                    match pixel.judge(course, bow) {
                         Verdict::Free | Verdict::Below => continue,
                         Verdict::Open => {
-                            doubtful += usize::from(course.is_doubtful(pixel.t - bend.t, stretch, arc));
+                            doubtful += usize::from(course.is_doubtful(pixel.t - bend.t, stretch, bow));
                             if doubtful > DOUBTFUL {
                                 return None;
                             }

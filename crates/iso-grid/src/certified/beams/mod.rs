@@ -15,9 +15,9 @@
 //! What is left when beams are small goes to the search along single rays. A ray's stretches are looked at front to back
 //! whatever beams it goes through, so that the first root found is its first root.
 
-mod arcs;
 mod beam;
 mod bend;
+mod bows;
 mod bundle;
 mod creases;
 mod faces;

@@ -1,7 +1,7 @@
 //! Rays of a part along which F may bend, followed each for its own by values of F. Where F is monotone, they are followed
 //! [side by side](super::bundle).
 
-use super::arcs::{Arc, Bowed};
+use super::bows::{Bow, Bowed};
 use super::subdivision::Subdivision;
 use crate::{Hit, Kernel, Outcome, Ray, Span, Workspace};
 
@@ -59,22 +59,22 @@ impl Subdivision<'_> {
         &mut self,
         mut pixels: &mut [Pixel],
         kernels: u32,
-        arc: &Arc,
+        bow: &Bow,
         ended: &mut Vec<Ended>,
     ) {
         for step in 1..=STEPS {
             if pixels.is_empty() {
                 break;
             }
-            let count = self.approach(pixels, (kernels, arc), step == STEPS, ended);
+            let count = self.approach(pixels, (kernels, bow), step == STEPS, ended);
             pixels = &mut pixels[..count];
         }
     }
 
     /// Pursues each ray where the part's F is that of these kernels, and ends those that have a root.
-    pub(super) fn pursue_and_settle(&mut self, pixels: &mut [Pixel], kernels: u32, arc: &Arc) {
+    pub(super) fn pursue_and_settle(&mut self, pixels: &mut [Pixel], kernels: u32, bow: &Bow) {
         let mut ended = std::mem::take(&mut self.memory.ended);
-        self.pursue(pixels, kernels, arc, &mut ended);
+        self.pursue(pixels, kernels, bow, &mut ended);
         for ended in ended.drain(..) {
             self.settle(ended, kernels);
         }
@@ -96,7 +96,7 @@ impl Subdivision<'_> {
     fn approach(
         &mut self,
         pixels: &mut [Pixel],
-        (kernels, arc): (u32, &Arc),
+        (kernels, bow): (u32, &Bow),
         is_last: bool,
         ended: &mut Vec<Ended>,
     ) -> usize {
@@ -110,7 +110,7 @@ impl Subdivision<'_> {
         for number in 0..pixels.len() {
             let pixel = &mut pixels[number];
             let place = pixel.place;
-            match pixel.look(values[number], arc) {
+            match pixel.look(values[number], bow) {
                 Verdict::Open if !is_last => {
                     if kept < number {
                         pixels[kept] = pixels[number];

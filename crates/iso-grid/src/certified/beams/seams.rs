@@ -127,11 +127,11 @@ impl Subdivision<'_> {
                 Some(_) => continue,
                 None => {}
             }
-            if face.arc.rises() {
+            if face.bow.rises() {
                 // It may be negative from the start on.
                 found = Found::Unclear;
             }
-            let way = course.way_to_root(&face.arc);
+            let way = course.way_to_root(&face.bow);
             doubts += usize::from(!way.is_finite());
             if likely.is_none() || way < nearest {
                 (likely, nearest) = (Some(number), way);
@@ -161,7 +161,7 @@ impl Subdivision<'_> {
             }
         }
         let mut ended = std::mem::take(&mut self.memory.ended);
-        self.pursue(&mut pixels, face.kernels, &face.arc, &mut ended);
+        self.pursue(&mut pixels, face.kernels, &face.bow, &mut ended);
         for Ended { place, end } in ended.drain(..) {
             let known = approaches.binary_search_by_key(&place, |approach| approach.place);
             approaches[known.expect("only these were pursued")].learn(end);

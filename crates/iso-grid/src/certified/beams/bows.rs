@@ -23,7 +23,7 @@ pub(crate) struct Bowed {
 }
 
 /// What is known of F all over a part.
-pub(super) struct Arc {
+pub(super) struct Bow {
     /// Where the part's expansion is centred.
     t: f64,
     /// How far the slope of a ray there may be off.
@@ -47,7 +47,7 @@ pub(super) struct Arc {
     tolerance: f64,
 }
 
-impl Arc {
+impl Bow {
     /// What helps to find roots where F is as `bend` says with slopes in `slope`, and values are off by no more than `error`; `None` if
     /// F neither bends one way nor is monotone. Brackets are to be as narrow as `tolerance`.
     pub(super) fn new(bend: &Bend, slope: Ball, error: f64, tolerance: f64) -> Option<Self> {
@@ -94,31 +94,31 @@ impl Arc {
 impl Pixel {
     /// Learns from the `value` that was computed for F at t.
     #[inline]
-    pub(super) fn look(&mut self, value: f64, arc: &Arc) -> Verdict {
-        let value = arc.sign * value;
+    pub(super) fn look(&mut self, value: f64, bow: &Bow) -> Verdict {
+        let value = bow.sign * value;
         if !value.is_finite() {
             return Verdict::Lost;
         }
         let Self { t, known, .. } = *self;
-        let away = t - arc.t;
-        let [slope, bending] = [known.slope, away * arc.middle];
+        let away = t - bow.t;
+        let [slope, bending] = [known.slope, away * bow.middle];
         let mut course = Course {
             value,
-            value_error: arc.error,
+            value_error: bow.error,
             slope: slope + bending,
-            slope_error: arc.slope_error + away.abs() * arc.spread + ROUNDING * (slope.abs() + bending.abs()),
+            slope_error: bow.slope_error + away.abs() * bow.spread + ROUNDING * (slope.abs() + bending.abs()),
         };
         // The slope at t is the one from the last place to here, and half the way more of bending.
         let step = t - known.last_t;
-        let [slope, bending] = [(value - known.last) / step, 0.5 * step * arc.middle];
-        let slope_error = 0.5 * step.abs() * arc.spread
-            + 2.0 * arc.error / step.abs()
+        let [slope, bending] = [(value - known.last) / step, 0.5 * step * bow.middle];
+        let slope_error = 0.5 * step.abs() * bow.spread
+            + 2.0 * bow.error / step.abs()
             + ROUNDING * (slope.abs() + bending.abs());
         if slope_error < course.slope_error {
             (course.slope, course.slope_error) = (slope + bending, slope_error);
         }
         (self.known.last_t, self.known.last) = (t, value);
-        self.judge(course, arc)
+        self.judge(course, bow)
     }
 
     /// A ray on which F is `course` where the part's expansion is centred.
@@ -127,44 +127,44 @@ impl Pixel {
         (place, ray): (usize, Ray),
         [wanted, reach]: [Span; 2],
         course: &Course,
-        arc: &Arc,
+        bow: &Bow,
     ) -> Self {
         let known = Bowed { slope: course.slope, last_t: f64::NAN, last: f64::NAN, starts_below: false };
-        Self { place, ray, wanted, reach, t: arc.t, known }
+        Self { place, ray, wanted, reach, t: bow.t, known }
     }
 
     /// What F and its slope at t say of the root that is wanted.
     #[inline]
-    pub(super) fn judge(&mut self, mut course: Course, arc: &Arc) -> Verdict {
+    pub(super) fn judge(&mut self, mut course: Course, bow: &Bow) -> Verdict {
         course.slope_error += ROUNDING * (course.slope.abs() + course.slope_error);
-        if course.stays_above(arc) {
-            return self.free(1.0, arc);
+        if course.stays_above(bow) {
+            return self.free(1.0, bow);
         }
-        if let Some(slopes) = arc.slopes {
+        if let Some(slopes) = bow.slopes {
             course.narrow(slopes);
         }
         let t = self.t;
         let [from, to] = ways(self.wanted, t);
-        let discriminant = course.discriminant(arc);
-        let has_root = discriminant > 0.0 || arc.slopes.is_some();
-        let mut way = course.way(discriminant, self.side(arc), arc);
+        let discriminant = course.discriminant(bow);
+        let has_root = discriminant > 0.0 || bow.slopes.is_some();
+        let mut way = course.way(discriminant, self.side(bow), bow);
         if !(has_root && from <= way && way <= to) {
-            if let Some(sign) = course.sign_between([from, to], arc) {
-                return self.free(sign, arc);
+            if let Some(sign) = course.sign_between([from, to], bow) {
+                return self.free(sign, bow);
             }
-            if arc.slopes.is_none() && discriminant > 0.0 && way < from && !self.known.starts_below {
-                if course.is_negative_at(from, arc) {
-                    if arc.falls {
+            if bow.slopes.is_none() && discriminant > 0.0 && way < from && !self.known.starts_below {
+                if course.is_negative_at(from, bow) {
+                    if bow.falls {
                         return Verdict::Below;
                     }
                     self.known.starts_below = true;
-                    way = course.way(discriminant, 1.0, arc);
+                    way = course.way(discriminant, 1.0, bow);
                 } else {
                     way = from;
                 }
             }
         }
-        if has_root && let Some(verdict) = self.enclose(&course, way, arc) {
+        if has_root && let Some(verdict) = self.enclose(&course, way, bow) {
             return verdict;
         }
         let next = (t + way).max(self.reach.start).min(self.reach.end);
@@ -176,13 +176,13 @@ impl Pixel {
     }
 
     /// What it means that there is no root, since F, or −F, is of one sign.
-    fn free(&self, sign: f64, arc: &Arc) -> Verdict {
-        if arc.falls && sign * arc.sign < 0.0 { Verdict::Below } else { Verdict::Free }
+    fn free(&self, sign: f64, bow: &Bow) -> Verdict {
+        if bow.falls && sign * bow.sign < 0.0 { Verdict::Below } else { Verdict::Free }
     }
 
     /// The sign of the slope at the root that is wanted.
-    fn side(&self, arc: &Arc) -> f64 {
-        match arc.slopes {
+    fn side(&self, bow: &Bow) -> f64 {
+        match bow.slopes {
             Some(slopes) => slopes.lo.signum(),
             None if self.known.starts_below => 1.0,
             None => -1.0,
@@ -192,25 +192,25 @@ impl Pixel {
     /// Ends with the root in the way from t, if it is enclosed well enough: by the interval Newton method on as much
     /// of the reach as it needs.
     #[inline]
-    fn enclose(&mut self, course: &Course, way: f64, arc: &Arc) -> Option<Verdict> {
+    fn enclose(&mut self, course: &Course, way: f64, bow: &Bow) -> Option<Verdict> {
         let Course { value, value_error, slope, slope_error } = *course;
-        let (t, side) = (self.t, self.side(arc));
+        let (t, side) = (self.t, self.side(bow));
         let steep = slope.abs();
         let window = 1.25 * way.abs() + 2.0 * value_error / steep + ROUNDING * t;
         // All slopes in the window are of one sign, and those of chords from t within it are closer to that at t.
-        let changes = window * arc.most;
+        let changes = window * bow.most;
         let is_simple = side * slope > (1.0 + ROUNDING) * (slope_error + changes);
         let off = slope_error + 0.5 * changes;
         let least = (1.0 - ROUNDING) * (steep - off);
         let offset = value / slope;
         let radius =
             (1.0 + ROUNDING) * (offset.abs() * off + value_error) / least + ROUNDING * (t + offset.abs());
-        if !(is_simple && offset.abs() + radius <= window && 2.0 * radius <= arc.tolerance) {
+        if !(is_simple && offset.abs() + radius <= window && 2.0 * radius <= bow.tolerance) {
             return None;
         }
         let root = Span { start: t - offset - radius, end: t - offset + radius };
         if self.wanted.end < root.start {
-            return Some(self.free(-side, arc));
+            return Some(self.free(-side, bow));
         }
         if root.start < self.reach.start || self.reach.end < root.end || root.end < self.wanted.start {
             return Some(Verdict::Lost);
@@ -224,9 +224,9 @@ impl Pixel {
 impl Course {
     /// Whether F is positive all along the ray, as far as the part goes.
     #[inline]
-    fn stays_above(&self, arc: &Arc) -> bool {
+    fn stays_above(&self, bow: &Bow) -> bool {
         let steepest = self.slope.abs() + self.slope_error;
-        (self.value - self.value_error) * arc.twice_least > steepest * steepest
+        (self.value - self.value_error) * bow.twice_least > steepest * steepest
     }
 
     /// Leaves out what the slope is not.
@@ -239,73 +239,73 @@ impl Course {
     }
 
     /// Whether there may be no root after all, or none from the first to the last of these ways.
-    pub(super) fn is_doubtful(&self, way: f64, [from, to]: [f64; 2], arc: &Arc) -> bool {
-        let error = self.slope.abs() * self.slope_error + arc.middle * self.value_error;
-        arc.slopes.is_none() && self.discriminant(arc) < 2.0 * error || way < from || to < way
+    pub(super) fn is_doubtful(&self, way: f64, [from, to]: [f64; 2], bow: &Bow) -> bool {
+        let error = self.slope.abs() * self.slope_error + bow.middle * self.value_error;
+        bow.slopes.is_none() && self.discriminant(bow) < 2.0 * error || way < from || to < way
     }
 
     /// Of the parabola through here: positive if it has roots.
     #[inline]
-    fn discriminant(&self, arc: &Arc) -> f64 {
-        self.slope * self.slope - 2.0 * arc.middle * self.value
+    fn discriminant(&self, bow: &Bow) -> f64 {
+        self.slope * self.slope - 2.0 * bow.middle * self.value
     }
 
     /// How far the root on a side of the parabola is, or else a place where F may be seen to be positive.
     #[inline]
-    fn way(&self, discriminant: f64, side: f64, arc: &Arc) -> f64 {
+    fn way(&self, discriminant: f64, side: f64, bow: &Bow) -> f64 {
         let Self { value, slope, .. } = *self;
         if discriminant > 0.0 {
             let root = side * discriminant.sqrt();
             if side * slope > 0.0 {
                 -2.0 * value / (slope + root)
-            } else if arc.slopes.is_none() {
-                (root - slope) / arc.middle
+            } else if bow.slopes.is_none() {
+                (root - slope) / bow.middle
             } else {
                 -value / slope
             }
-        } else if arc.slopes.is_some() {
+        } else if bow.slopes.is_some() {
             -value / slope
         } else {
             // There is a lowest point. Where that is all but here, another value nearby tells the slope.
-            let lowest = -slope / arc.middle;
-            let near = 0.5 * (value.abs() / arc.middle).sqrt();
+            let lowest = -slope / bow.middle;
+            let near = 0.5 * (value.abs() / bow.middle).sqrt();
             if lowest.abs() < 0.5 * near { near.copysign(lowest) } else { lowest }
         }
     }
 
     /// Whether F is certainly negative so far away.
-    fn is_negative_at(&self, way: f64, arc: &Arc) -> bool {
+    fn is_negative_at(&self, way: f64, bow: &Bow) -> bool {
         let slope = self.slope + self.slope_error.copysign(way);
-        let rise = way * (slope + 0.5 * way * arc.curvature.hi);
-        self.value + self.value_error + rise + self.slack(way.abs(), arc) < 0.0
+        let rise = way * (slope + 0.5 * way * bow.curvature.hi);
+        self.value + self.value_error + rise + self.slack(way.abs(), bow) < 0.0
     }
 
     /// The sign of F from the first to the last of these ways, if it certainly is the same everywhere.
     #[inline]
-    pub(super) fn sign_between(&self, [from, to]: [f64; 2], arc: &Arc) -> Option<f64> {
-        if self.stays_above(arc) {
+    pub(super) fn sign_between(&self, [from, to]: [f64; 2], bow: &Bow) -> Option<f64> {
+        if self.stays_above(bow) {
             return Some(1.0);
         }
-        let error = self.value_error + self.slack(from.abs().max(to.abs()), arc);
+        let error = self.value_error + self.slack(from.abs().max(to.abs()), bow);
         let (lo, hi) = (self.slope - self.slope_error, self.slope + self.slope_error);
-        if least(self.value - error, [lo, hi], arc.curvature.lo, [from, to]) > 0.0 {
+        if least(self.value - error, [lo, hi], bow.curvature.lo, [from, to]) > 0.0 {
             return Some(1.0);
         }
-        let is_below = least(-self.value - error, [-hi, -lo], -arc.curvature.hi, [from, to]) > 0.0;
+        let is_below = least(-self.value - error, [-hi, -lo], -bow.curvature.hi, [from, to]) > 0.0;
         is_below.then_some(-1.0)
     }
 
     /// About how far the root is that is wanted first, if there is one on the parabola; infinite if it has none.
-    pub(super) fn way_to_root(&self, arc: &Arc) -> f64 {
-        let discriminant = self.discriminant(arc);
-        let side = arc.slopes.map_or(-1.0, |slopes| slopes.lo.signum());
-        let has_root = discriminant > 0.0 || arc.slopes.is_some();
-        if has_root { self.way(discriminant, side, arc) } else { f64::INFINITY }
+    pub(super) fn way_to_root(&self, bow: &Bow) -> f64 {
+        let discriminant = self.discriminant(bow);
+        let side = bow.slopes.map_or(-1.0, |slopes| slopes.lo.signum());
+        let has_root = discriminant > 0.0 || bow.slopes.is_some();
+        if has_root { self.way(discriminant, side, bow) } else { f64::INFINITY }
     }
 
     /// What rounding comes to in what is said of F so far away.
-    fn slack(&self, way: f64, arc: &Arc) -> f64 {
-        ROUNDING * (self.value.abs() + way * (self.slope.abs() + self.slope_error + way * arc.most))
+    fn slack(&self, way: f64, bow: &Bow) -> f64 {
+        ROUNDING * (self.value.abs() + way * (self.slope.abs() + self.slope_error + way * bow.most))
     }
 }
 
@@ -339,8 +339,8 @@ mod tests {
     use super::*;
 
     /// A function that bends as x² does, or its negative, where only roots at which it falls are wanted, or all.
-    fn arc(sign: f64, falls: bool) -> Arc {
-        Arc {
+    fn bow(sign: f64, falls: bool) -> Bow {
+        Bow {
             t: 1.0,
             slope_error: 1e-3,
             sign,
@@ -357,22 +357,22 @@ mod tests {
     }
 
     /// What follows where the function, or its negative, has a value in the middle and is level there.
-    fn judged(value: f64, arc: &Arc) -> Verdict {
+    fn judged(value: f64, bow: &Bow) -> Verdict {
         let course = Course { value, value_error: 1e-3, slope: 0.0, slope_error: 1e-3 };
         let [wanted, reach] = [Span { start: 0.9, end: 1.1 }, Span { start: 0.8, end: 1.2 }];
         let ray = Ray { origin: glam::DVec3::ZERO, direction: glam::DVec3::X };
-        Pixel::starting((0, ray), [wanted, reach], &course, arc).judge(course, arc)
+        Pixel::starting((0, ray), [wanted, reach], &course, bow).judge(course, bow)
     }
 
     #[test]
     fn what_is_negative_everywhere_does_not_fall_to_zero() {
         for falls in [false, true] {
-            assert!(matches!(judged(1.0, &arc(1.0, falls)), Verdict::Free));
+            assert!(matches!(judged(1.0, &bow(1.0, falls)), Verdict::Free));
         }
-        assert!(matches!(judged(-1.0, &arc(1.0, false)), Verdict::Free));
-        assert!(matches!(judged(-1.0, &arc(1.0, true)), Verdict::Below));
+        assert!(matches!(judged(-1.0, &bow(1.0, false)), Verdict::Free));
+        assert!(matches!(judged(-1.0, &bow(1.0, true)), Verdict::Below));
         // The negative of these.
-        assert!(matches!(judged(1.0, &arc(-1.0, true)), Verdict::Below));
-        assert!(matches!(judged(-1.0, &arc(-1.0, true)), Verdict::Free));
+        assert!(matches!(judged(1.0, &bow(-1.0, true)), Verdict::Below));
+        assert!(matches!(judged(-1.0, &bow(-1.0, true)), Verdict::Free));
     }
 }
