@@ -335,9 +335,10 @@ impl Wanted<'_> {
             ),
             Kernel::HessianEnclosures => (false, "the method samples"),
             Kernel::Forms | Kernel::ParallelForms if !certified => (false, "the method samples"),
-            Kernel::Forms | Kernel::ParallelForms if !kernel.pays(self.program) => {
-                (false, "F is too large, has jumps or functions without forms, or is the logarithm of a sum of many exponentials")
-            }
+            Kernel::Forms | Kernel::ParallelForms if !kernel.pays(self.program) => (
+                false,
+                "F is too large, has jumps or functions without forms, or is the logarithm of a sum of many exponentials",
+            ),
             Kernel::Forms if self.is_parallel() => (false, "all rays have one direction"),
             Kernel::ParallelForms if !self.is_parallel() => (false, "each ray has its own direction"),
             Kernel::Forms | Kernel::ParallelForms => {
