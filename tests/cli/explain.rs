@@ -73,7 +73,6 @@ fn sections_can_be_chosen() {
     assert_eq!(sections, ["clif", "tree"]);
 }
 
-/// The hint is said, and what is computed stays what was written.
 /// A listing has its limit, which is no reason to show nothing else.
 #[test]
 fn what_is_too_large_for_a_listing_is_explained_nevertheless() {
@@ -82,6 +81,7 @@ fn what_is_too_large_for_a_listing_is_explained_nevertheless() {
     assert!(text.contains("plan: ") && text.contains("the jit engine allows 3000"), "{text}");
 }
 
+/// The hint is said, and what is computed stays what was written.
 #[test]
 fn better_forms_are_named_but_not_used() {
     let case = Case::new();

@@ -107,6 +107,8 @@ fn habits_from_elsewhere_are_answered() {
         ("sin x = y", "write `sin(x)`"),
         ("atan(y, x) = z", "it is called as `atan2(y, x)`"),
         ("F(x, y, z) = x", "leave out `F(…) =` before a formula"),
+        ("foo(x) + y", "define it before: `foo(u) := …`"),
+        ("cube*x", "the coordinates are x, y and z"),
         ("x && y", "write `and` between conditions"),
         ("\\frac{x}{2}", "`\\` has no meaning in a formula"),
         ("x = 1 // a plane", "comments begin with `#`"),

@@ -12,6 +12,8 @@ pub(crate) struct Drawn<'a> {
     pub(crate) camera: &'a Camera,
     pub(crate) size: Size,
     pub(crate) pixels: StatusCounts,
+    /// Whether the method proves what it says.
+    pub(crate) is_certified: bool,
     /// Whether colours tell what is not known.
     pub(crate) shows_status: bool,
 }
@@ -22,7 +24,7 @@ impl Drawn<'_> {
         let StatusCounts { hit, touch, undecided, unfinished, .. } = self.pixels;
         let mut notes = Vec::new();
         if undecided > 0 && !self.shows_status {
-            let problem = format!("of {undecided} rays nothing is proven, which looks like background");
+            let problem = format!("{undecided} undecided, which looks like background");
             notes.push(format!("{problem}: --show-status shows where"));
         }
         if hit + touch + undecided + unfinished == 0 {
@@ -55,6 +57,10 @@ impl Drawn<'_> {
         if self.looks_past() {
             return Ok(format!("the camera looks past the box, {shown}"));
         }
+        if !self.is_certified {
+            let finer = "a finer --grid or --step may find it, and --method certified proves what there is";
+            return Ok(format!("no ray was found to meet the surface in the box, {shown}: {finer}"));
+        }
         let reasons = "it may consist of points and curves, or lie where the camera does not look";
         Ok(format!("no ray meets the surface in the box, {shown}: {reasons}"))
     }
@@ -80,10 +86,34 @@ fn extent(region: &Region) -> String {
 
 /// A number in three digits at least, without zeros at its end.
 fn short(value: f64) -> String {
-    if value != 0.0 && value.abs() < 1e-3 {
-        return format!("{value:.1e}");
+    if value != 0.0 && !(1e-3..1e6).contains(&value.abs()) {
+        return format!("{value:.2e}");
     }
+    // No zero has a sign.
+    let value = value + 0.0;
     let digits = (2.0 - value.abs().log10().floor()).clamp(0.0, 12.0) as usize;
     let text = format!("{value:.digits$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short;
+
+    #[test]
+    fn numbers_are_short() {
+        for (value, expected) in [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (2.0, "2"),
+            (-1.09375, "-1.09"),
+            (0.00123456, "0.00123"),
+            (123.456, "123"),
+            (99_999.4, "99999"),
+            (3e-12, "3.00e-12"),
+            (-1e300, "-1.00e300"),
+        ] {
+            assert_eq!(short(value), expected);
+        }
+    }
 }

@@ -84,7 +84,7 @@ impl OutputFile {
             }
             Ok(found) if !found.is_file() => Place::Stream,
             Ok(_) => Place::Replaced(path.canonicalize().map_err(|error| Failure::write(&path, error))?),
-            Err(_) => Place::Replaced(path.clone()),
+            Err(_) => Place::Replaced(resolved(&path)),
         };
         if let Place::Replaced(target) = &place {
             let _held = hold_unfinished_file();
@@ -96,6 +96,11 @@ impl OutputFile {
     /// The path as given.
     pub(crate) fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Whether what is written to one is lost when the other is written.
+    pub(crate) fn is_replaced_by(&self, other: &Self) -> bool {
+        matches!(self.place, Place::Replaced(_)) && self.place == other.place
     }
 
     /// Writes what `fill` writes: to a temporary file beside the target, which then takes its place.
@@ -125,17 +130,29 @@ impl OutputFile {
     }
 }
 
-fn temporary_beside(target: &Path) -> io::Result<NamedTempFile> {
-    let folder = match target.parent() {
+/// The path of a file that is none yet, so that it is the same however it is written. As given where its folder is not found.
+fn resolved(path: &Path) -> PathBuf {
+    let folder = folder_of(path).canonicalize();
+    match (folder, path.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => path.to_owned(),
+    }
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
-    };
+    }
+}
+
+fn temporary_beside(target: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".iso-");
     // Temporary files are private by default; a result is as readable as any file that the user creates.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder).map_err(without_temporary_name)
+    builder.tempfile_in(folder_of(target)).map_err(without_temporary_name)
 }
 
 /// The error of a temporary file, whose name is nobody's concern.

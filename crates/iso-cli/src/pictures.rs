@@ -56,21 +56,25 @@ impl PictureFiles {
 
     /// No file may be written over another.
     fn check_apart(&self) -> Result<(), Failure> {
-        let names = self.names();
-        match names.iter().enumerate().find(|(place, name)| names[..*place].contains(name)) {
-            Some((_, name)) => Err(Failure::usage(
-                format!("two layers go to one file, {name}"),
-                "give each a file of its own",
-            )),
-            None => Ok(()),
-        }
+        let files: Vec<_> = self.files().collect();
+        let is_lost = |&(place, file): &(usize, &&OutputFile)| {
+            files[..place].iter().any(|earlier| earlier.is_replaced_by(file))
+        };
+        let Some((_, file)) = files.iter().enumerate().find(is_lost) else { return Ok(()) };
+        let problem = format!("two layers go to one file, {}", file.path().display());
+        Err(Failure::usage(problem, "give each a file of its own"))
     }
 
     /// The files' names as given, the shaded picture first.
     pub(crate) fn names(&self) -> Vec<String> {
+        self.files().map(|file| file.path().display().to_string()).collect()
+    }
+
+    /// The files, the shaded picture first.
+    fn files(&self) -> impl Iterator<Item = &OutputFile> {
         let color = self.color.as_ref().map(|(file, _)| file);
         let others = [&self.depth, &self.normals, &self.points].into_iter().flatten();
-        color.into_iter().chain(others).map(|file| file.path().display().to_string()).collect()
+        color.into_iter().chain(others)
     }
 
     /// Writes all files.

@@ -126,7 +126,7 @@ impl SequenceSummary {
     }
 }
 
-/// The summary in one line.
+/// The summary in one line, and a line for each note.
 impl Display for SequenceSummary {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match &self.files[..] {
@@ -135,7 +135,15 @@ impl Display for SequenceSummary {
         }
         let first @ Summary { width, height, .. } = &self.frames[0];
         write!(f, ": {} pictures of {width}x{height} pixels{}: ", self.frames.len(), first.rays_each())?;
-        write_line(f, &self.pixels, &self.milliseconds)
+        write_line(f, &self.pixels, &self.milliseconds)?;
+        let mut notes: Vec<(&str, u32)> = Vec::new();
+        for note in self.frames.iter().flat_map(|frame| &frame.notes) {
+            match notes.iter_mut().find(|(known, _)| known == note) {
+                Some((_, pictures)) => *pictures += 1,
+                None => notes.push((note, 1)),
+            }
+        }
+        notes.iter().try_for_each(|(note, pictures)| write!(f, "\nnote on {pictures} of them: {note}"))
     }
 }
 

@@ -60,11 +60,13 @@ impl Glimpse {
 }
 
 impl Fitted {
-    /// The least region that holds both.
+    /// The least region that holds both, of surfaces that may be different ones. If it is larger than one of the two, what goes on outside of
+    /// that may lie in it.
     pub fn hull(&self, other: &Self) -> Self {
-        let region =
-            Region { min: self.region.min.min(other.region.min), max: self.region.max.max(other.region.max) };
-        Self { region, goes_on: self.goes_on || other.goes_on }
+        let (min, max) = (self.region.min.min(other.region.min), self.region.max.max(other.region.max));
+        let region = Region { min, max };
+        let is_both = self.region == region && other.region == region;
+        Self { region, goes_on: is_both && self.goes_on && other.goes_on }
     }
 
     /// A region close around the surface, or around a part of it near the origin.
@@ -85,7 +87,10 @@ impl Fitted {
         let mut best: Option<Glimpse> = None;
         let mut goes_on = false;
         for (number, half_side) in HALF_SIDES.into_iter().chain(FARTHER).enumerate() {
-            if is_stopped() || best.is_some() && number >= HALF_SIDES.len() {
+            // What is cut off in the last of the nearer cubes is looked at in two more.
+            let is_known = best.as_ref().is_some_and(|best| best.axes_met == 0 || goes_on);
+            let enough = if is_known { HALF_SIDES.len() } else { HALF_SIDES.len() + 2 };
+            if is_stopped() || best.is_some() && number >= enough {
                 break;
             }
             let cube = cube(half_side);
@@ -99,7 +104,7 @@ impl Fitted {
             let is_better = if is_whole { found.axes_met == 0 } else { found.rank() < known.rank() };
             let mut has_more = || {
                 cells.retain(|cell| cell.to_array().iter().any(|along| !MIDDLE.contains(along)));
-                cube.is_crossed(std::mem::take(&mut cells), kernel, workspace)
+                cube.is_crossed(std::mem::take(&mut cells), (kernel, &is_stopped), workspace)
             };
             if is_better && (!is_whole || has_more()) {
                 (best, goes_on) = (Some(found), false);
@@ -180,16 +185,24 @@ impl Region {
     }
 
     /// Whether the surface is found to have points in some of sixteen cells along each axis. If there are few, they are halved to find out.
-    fn is_crossed(&self, mut cells: Vec<IVec3>, kernel: &dyn BoxKernel, workspace: &mut Workspace) -> bool {
+    fn is_crossed(
+        &self,
+        mut cells: Vec<IVec3>,
+        (kernel, is_stopped): (&dyn BoxKernel, &dyn Fn() -> bool),
+        workspace: &mut Workspace,
+    ) -> bool {
         for depth in HALVINGS..=HALVINGS + HALVINGS_TO_PROVE {
-            let some: Vec<_> = cells.iter().copied().step_by(1 + cells.len() / MOST_TO_PROVE).collect();
+            if depth > HALVINGS {
+                cells = self.not_empty(halved(&cells), 1 << depth, kernel, workspace);
+            }
+            let step = cells.len().div_ceil(MOST_TO_PROVE).max(1);
+            let some: Vec<_> = cells.iter().copied().step_by(step).collect();
             if some.chunks(64).any(|cells| self.changes_sign(cells, 1 << depth, kernel, workspace)) {
                 return true;
             }
-            if cells.len() > MOST_TO_PROVE {
+            if cells.len() > MOST_TO_PROVE || is_stopped() {
                 return false;
             }
-            cells = self.not_empty(halved(&cells), 2 << depth, kernel, workspace);
         }
         false
     }
@@ -352,6 +365,21 @@ mod tests {
             DVec3::new(3001.0, 1.0, 1.0),
         );
         assert_close("x^2 + y^2 + z^2 = 1e12", DVec3::splat(-1e6), DVec3::splat(1e6));
+    }
+
+    #[test]
+    fn what_is_met_first_in_the_largest_of_the_near_cubes_is_no_scrap() {
+        assert_close("x^2 + y^2 + z^2 = 490000", DVec3::splat(-700.0), DVec3::splat(700.0));
+        for formula in ["x = 300", "x = 1000", "x^2 + y^2 = 90000"] {
+            assert!(around(formula).goes_on, "{formula}");
+        }
+    }
+
+    #[test]
+    fn of_two_regions_neither_may_hide_what_goes_on_outside_of_the_other() {
+        let [near, far] = ["x^2 + y^2 = 1", "x^2 + y^2 + z^2 = 100"].map(around);
+        assert!(near.goes_on && near.hull(&near).goes_on);
+        assert!(!near.hull(&far).goes_on && !far.hull(&near).goes_on);
     }
 
     /// Nearer cubes show corners of the hyperboloid, and its waist is farther out.

@@ -89,7 +89,8 @@ impl Region {
         if !(ray.origin.is_finite() && ray.direction.is_finite()) {
             return None;
         }
-        let (mut start, mut end) = (0.0_f64, f64::INFINITY);
+        // A ray may be too slow to leave the box at any double.
+        let (mut start, mut end) = (0.0_f64, f64::MAX);
         for axis in 0..3 {
             let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
             let (lo, hi) = (self.min[axis], self.max[axis]);
@@ -103,6 +104,6 @@ impl Region {
             start = start.max(a.min(b));
             end = end.min(a.max(b));
         }
-        (start < end && end.is_finite()).then_some(Span { start, end })
+        (start < end && ray.direction != DVec3::ZERO).then_some(Span { start, end })
     }
 }

@@ -34,6 +34,21 @@ impl<'t> Cursor<'t> {
         self.next.checked_sub(1).map(|place| self.items[place])
     }
 
+    /// Whether the name here begins a statement, and `=` follows it or its arguments.
+    pub(super) fn is_at_left_side(&self) -> bool {
+        let begins = self.previous().is_none_or(|item| matches!(item.kind, Kind::semicolon | Kind::newline));
+        let mut depth = 0_usize;
+        let after = self.items[self.next + 1..].iter().find(|item| {
+            match item.kind {
+                Kind::open => depth += 1,
+                Kind::close => depth = depth.saturating_sub(1),
+                _ => return depth == 0,
+            }
+            false
+        });
+        begins && after.is_some_and(|item| item.kind == Kind::equal)
+    }
+
     /// The last item before [`Cursor::peek`] that is not the end of a line.
     pub(super) fn previous_on_lines(&self) -> Option<Item<'t>> {
         self.items[..self.next].iter().rev().find(|item| item.kind != Kind::newline).copied()

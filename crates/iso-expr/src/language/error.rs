@@ -254,5 +254,27 @@ fn shown(cycle: &[String]) -> String {
 
 /// A character as it is, unless nothing could be seen of it.
 fn readable(character: char) -> String {
-    if character.is_control() { character.escape_debug().to_string() } else { character.to_string() }
+    match character {
+        '\\' | '\'' | '"' => character.to_string(),
+        other => other.escape_debug().to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::readable;
+
+    #[test]
+    fn characters_that_cannot_be_seen_are_named() {
+        for (character, expected) in [
+            ('\\', "\\"),
+            ('\'', "'"),
+            ('é', "é"),
+            ('\u{200b}', "\\u{200b}"),
+            ('\u{202e}', "\\u{202e}"),
+            ('\t', "\\t"),
+        ] {
+            assert_eq!(readable(character), expected);
+        }
+    }
 }

@@ -162,7 +162,8 @@ impl<'t> Reader<'_, 't> {
                 Err(fault::missing_arguments(item, &next, pattern))
             }
             None => {
-                Err(fault::unknown_name(item, &next, self.cursor.previous(), self.scope, self.parameters))
+                let is_left_side = self.cursor.is_at_left_side();
+                Err(fault::unknown_name(item, &next, is_left_side, self.scope, self.parameters))
             }
         }
     }

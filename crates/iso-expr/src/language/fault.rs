@@ -8,11 +8,11 @@ use super::item::{Item, Kind, shortened};
 use super::scope::{Parameters, Scope};
 use super::suggestion::suggestion;
 
-/// A name that means nothing; `next` and `previous` stand around it.
+/// A name that means nothing; `next` stands after it. It may begin a statement and be all of an equation's left side, but for arguments.
 pub(super) fn unknown_name(
     item: &Item<'_>,
     next: &Item<'_>,
-    previous: Option<Item<'_>>,
+    is_left_side: bool,
     scope: &Scope<'_>,
     parameters: &Parameters<'_>,
 ) -> FormulaError {
@@ -21,18 +21,15 @@ pub(super) fn unknown_name(
     if item.text == "log" {
         return bare_logarithm(item.span());
     }
-    let starts_statement = previous.is_none_or(|item| matches!(item.kind, Kind::semicolon | Kind::newline));
-    let help = match suggestion(item.text, is_called, scope, parameters) {
-        None if starts_statement && next.kind == Kind::equal => format!("to define it, write `{name} := …`"),
-        Some(help) if starts_statement && next.kind == Kind::equal => {
-            format!("{help} To define it, write `{name} := …`")
-        }
-        Some(help) => help,
-        None if is_called && starts_statement => {
+    let help = match (suggestion(item.text, is_called, scope, parameters), is_left_side) {
+        (Some(help), true) if !is_called => format!("{help} To define it, write `{name} := …`"),
+        (Some(help), _) => help,
+        (None, true) if is_called => {
             format!("leave out `{name}(…) =` before a formula, or define it: `{name}(u) := …`")
         }
-        None if is_called => format!("define it before: `{name}(u) := …`"),
-        None => format!("the coordinates are x, y and z; define others before: `{name} := 1`"),
+        (None, true) => format!("to define it, write `{name} := …`"),
+        (None, false) if is_called => format!("define it before: `{name}(u) := …`"),
+        (None, false) => format!("the coordinates are x, y and z; define others before: `{name} := 1`"),
     };
     let kind = match is_called {
         true => FormulaErrorKind::UnknownFunction { name },

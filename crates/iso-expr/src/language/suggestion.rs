@@ -24,7 +24,7 @@ pub(super) fn suggestion(
     let as_call = || functions_first(name, is_called, &values, &functions);
     as_case()
         .map(|other| format!("did you mean `{other}`?"))
-        .or_else(|| written_here(name))
+        .or_else(|| is_called.then(|| written_here(name)).flatten())
         .or_else(|| as_product().or_else(as_call).map(|text| format!("did you mean `{text}`?")))
         .or_else(|| nearest(name, known.iter().copied()).map(|other| format!("did you mean `{other}`?")))
 }

@@ -45,7 +45,7 @@ pub(super) fn index(x: f64) -> u64 {
 /// - what r's low part adds, cut off after r²: 2⁻⁶³·³;
 /// - ln c and ln 2: 2⁻⁸⁰.
 ///
-/// Together 2⁻⁶¹·¹; the greatest that was seen, in 330,000 values beside ones of 300 bits, is 2⁻⁶²·⁵.
+/// Together 2⁻⁶¹·⁰; the greatest that was seen, in 330,000 values beside ones of 300 bits, is 2⁻⁶²·⁵.
 #[inline(always)]
 pub(super) fn ln(x: f64, [inverse, logarithm, logarithm_lo]: [f64; 3]) -> Approximation {
     /// Bits of this double and of a small integer are those of their sum.

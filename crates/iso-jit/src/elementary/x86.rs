@@ -125,7 +125,7 @@ compiled_for!(avx512, "avx512f,avx512dq", permuted);
 compiled_for!(avx2, "avx2,fma", indexed);
 
 /// Approximates where that decides the rounding, else calls the operations. The approximation is made from the lane, the argument and
-/// the entry nearest to it.
+/// the entry that `index` names for it.
 #[inline(always)]
 fn round<const COLUMNS: usize>(
     places: &mut [f64; WIDTH],

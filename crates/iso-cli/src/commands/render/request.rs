@@ -4,7 +4,7 @@ use std::io::Write;
 use std::sync::Arc;
 
 use iso_expr::Engine;
-use iso_grid::{Counters, Fitted, GridError, Kernel, Region, Tracer};
+use iso_grid::{Counters, Fitted, GridError, Kernel, Method, Region, Tracer};
 use iso_render::{Animation, Pass, Picture, Scene, Shading, Size, Smoothing, render_over};
 use rayon::ThreadPool;
 
@@ -195,7 +195,8 @@ impl Request {
         counters += picture.counters;
         add_to(&mut phases.encode, || files.write(picture))?;
         let (size, pixels, shows_status) = (self.drawn, picture.counts, self.shows_status);
-        let drawn = Drawn { surface, fitted, camera: &camera, size, pixels, shows_status };
+        let is_certified = matches!(plan.method(), Method::Certified { .. });
+        let drawn = Drawn { surface, fitted, camera: &camera, size, pixels, is_certified, shows_status };
         Ok(Some(Summary {
             files: files.names(),
             frame,

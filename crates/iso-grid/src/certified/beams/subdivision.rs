@@ -89,6 +89,9 @@ pub(in crate::certified) struct Subdivision<'a> {
     pub(super) least_overlap: f64,
 }
 
+/// The largest t of rays that are proven together: no sum or product of such ones overflows.
+const LONGEST_WAY: f64 = 1e150;
+
 impl<'a> Subdivision<'a> {
     /// `None` when there are no rays, or they are not finite or out of all proportion.
     pub(in crate::certified) fn new(
@@ -141,7 +144,12 @@ impl<'a> Subdivision<'a> {
         if let Some(stretch) = self.passage() {
             self.least_overlap = LEAST_OVERLAP * stretch.end;
             let form = Form::unknown(stretch);
-            self.memory.ahead.push(Part { beam: 0, kernels: 0, stretch, form, is_inside: false });
+            let part = Part { beam: 0, kernels: 0, stretch, form, is_inside: false };
+            if stretch.end <= LONGEST_WAY {
+                self.memory.ahead.push(part);
+            } else {
+                self.search_each(&part);
+            }
         }
         while let Some(part) = self.memory.ahead.pop() {
             if self.certified.stop.is_requested() {
