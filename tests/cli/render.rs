@@ -75,6 +75,7 @@ fn notes_say_what_a_picture_does_not_show() {
         ("(x - 0.1)^2 + y^2 + z^2 = 0", &["--box", "-2,2"], "it may consist of points and curves"),
         ("x^2 + y^2 = 1", &[], "the surface goes on outside of the box that is shown, x -1.09..1.09"),
         ("floor(x^2 + y^2 + z^2) = 3", &[], "--show-status shows where"),
+        ("x^2 + y^2 + z^2 = 1e-8", &["--box", "-2,2", "--method", "grid"], "--method certified proves"),
     ] {
         let notes = noted(formula, more);
         assert!(notes.len() == 1 && notes[0].contains(expected), "{formula}: {notes:?}");

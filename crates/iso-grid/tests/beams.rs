@@ -325,6 +325,24 @@ fn unrelated_rays_may_be_called_a_tile() {
     }
 }
 
+/// They leave the region at no t that a double holds.
+#[test]
+fn rays_of_a_tile_may_be_too_slow() {
+    let tracer = certified(&read("x^2 + y^2 + z^2 - 1"), 2.0);
+    let ray = |place: u32| {
+        let [y, z] = [place % 12, place / 12].map(|step| 0.2 * f64::from(step) - 1.1);
+        Ray { origin: DVec3::new(-3.0, y, z), direction: DVec3::new(2e-308, 0.0, 0.0) }
+    };
+    let view = View { name: "slow", rays: (0..144).map(ray).collect(), width: 12, raster: None };
+    let alone = alone(&tracer, &view.rays);
+    let hits = alone.iter().filter(|outcome| matches!(outcome, Outcome::Hit(_))).count();
+    // A disk of radius 1 in squares of 0.2.
+    assert!(hits.abs_diff(79) < 10, "{hits} hits");
+    for (a, b) in together(&tracer, &view).into_iter().flatten().zip(alone) {
+        assert!(is_same(a, b) && agree(a, b) && is_narrow(a), "{a:?}, alone {b:?}");
+    }
+}
+
 #[test]
 fn shortened_formulas_prove_what_whole_ones_do() {
     for (formula, half, name) in [SCENES[18], SCENES[19]] {
