@@ -124,6 +124,8 @@ pub(crate) fn equal(a: Decorated, b: Decorated) -> Decorated {
 
 /// b where the condition a is not zero, c where it is.
 ///
+/// The condition is a truth: a number that is zero on the box alone would have to be called no more than continuous there.
+///
 /// Where the condition is certain, only the branch taken counts: a jump of the condition between nonzero values does
 /// not show. But unless the condition is [`Decoration::Common`] it may be another one right beside the box.
 #[inline]

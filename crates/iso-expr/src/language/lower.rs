@@ -234,6 +234,11 @@ impl<'a> Lowering<'a> {
 
     fn call(&mut self, function: Function, arguments: Vec<NodeId>) -> Result<Step, FormulaError> {
         match function {
+            Function::Operation(Operation::Select) => {
+                let condition = self.builder.truth(arguments[0])?;
+                let choice = [condition, arguments[1], arguments[2]];
+                self.builder.apply(Operation::Select, &choice).map(Step::Done)
+            }
             Function::Operation(operation) => self.builder.apply(operation, &arguments).map(Step::Done),
             Function::Fold(operation) => {
                 let mut result = arguments[0];
@@ -321,6 +326,14 @@ mod tests {
         assert_eq!(operations(lower("e^x").program()), [Exp]);
         // Twenty tenths of a double are not the integer 2.
         assert_eq!(operations(lower("x^(20*0.1)").program()), [Multiply, Power]);
+    }
+
+    /// A number may be zero on a box and nothing else beside it, which a comparison tells.
+    #[test]
+    fn a_condition_is_a_truth() {
+        use Operation::*;
+        assert_eq!(operations(lower("if(x < 1, y, z)").program()), [Less, Select]);
+        assert_eq!(operations(lower("if(max(x, 0), 5, y)").program()), [Maximum, Equal, Subtract, Select]);
     }
 
     #[test]

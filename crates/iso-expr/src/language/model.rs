@@ -242,8 +242,14 @@ impl<'a> Model<'a> {
                 let size = builder.apply(Absolute, &[b])?;
                 builder.apply(Modulo, &[a, size])
             }
-            Code::And => builder.apply(Select, &[a, b, a]),
-            Code::Or => builder.apply(Select, &[a, a, b]),
+            Code::And => {
+                let condition = builder.truth(a)?;
+                builder.apply(Select, &[condition, b, a])
+            }
+            Code::Or => {
+                let condition = builder.truth(a)?;
+                builder.apply(Select, &[condition, a, b])
+            }
             Code::Constant | Code::Variable(_) => unreachable!("they have no operands that are nodes"),
         }
     }
