@@ -9,7 +9,7 @@ use crate::{Region, Surface, Workspace};
 /// Half the sides of the cubes around the origin in which the surface is looked for, one after the other.
 const HALF_SIDES: [f64; 5] = [2.0, 8.0, 32.0, 128.0, 512.0];
 
-/// Those in which it is looked for if nothing is found in them.
+/// Those in which it is looked for if nothing is found in them, or if it is cut off in the last of them.
 const FARTHER: [f64; 6] = [2048.0, 8192.0, 32_768.0, 131_072.0, 524_288.0, 2_097_152.0];
 
 /// Cells of a cube along each axis that lie in the middle, where the cube before it lies.
@@ -75,7 +75,7 @@ impl Fitted {
     /// region is drawn around it in the first cube whose faces it does not meet, or in a larger one if that is proven to hold more of it
     /// and its faces are not met either. If there is none, that cube is taken where it meets the faces of the fewest axes, and
     /// [`Region::standard`] where nothing is found at all. Inside the cube that was taken nothing of the surface is left out. It is looked
-    /// for up to 512 from the origin, or up to 2²¹ if it is nowhere nearer.
+    /// for up to 512 from the origin, up to 8192 if it is cut off there, and up to 2²¹ if it is nowhere nearer.
     ///
     /// When the surface's [`Stop`](crate::Stop) is requested, any region.
     ///
@@ -112,21 +112,8 @@ impl Fitted {
                 goes_on = has_more();
             }
         }
-        let Some(Glimpse { held: mut region, .. }) = best else {
-            return Ok(Self { region: Region::standard(), goes_on: false });
-        };
-        for _ in 0..ROUNDS {
-            if is_stopped() {
-                break;
-            }
-            let Some(closer) = region.drawn_in(kernel, workspace) else { break };
-            let longest = region.extent().max_element();
-            region = closer;
-            if region.extent().max_element() > WORTHWHILE * longest {
-                break;
-            }
-        }
-        Ok(Self { region, goes_on })
+        let close = |best: Glimpse| best.held.closed_in((kernel, &is_stopped), workspace);
+        Ok(Self { region: best.map_or_else(Region::standard, close), goes_on })
     }
 }
 
@@ -134,6 +121,23 @@ impl Region {
     /// The cube from −2 to 2, which shows something of most surfaces that go on for ever.
     pub fn standard() -> Self {
         cube(HALF_SIDES[0])
+    }
+
+    /// The box around the surface in this one, as close as cells tell.
+    fn closed_in(
+        mut self,
+        (kernel, is_stopped): (&dyn BoxKernel, &dyn Fn() -> bool),
+        workspace: &mut Workspace,
+    ) -> Self {
+        for _ in 0..ROUNDS {
+            let Some(closer) = self.drawn_in(kernel, workspace).filter(|_| !is_stopped()) else { break };
+            let longest = self.extent().max_element();
+            self = closer;
+            if self.extent().max_element() > WORTHWHILE * longest {
+                break;
+            }
+        }
+        self
     }
 
     /// F − C over the region.
