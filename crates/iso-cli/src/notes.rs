@@ -1,7 +1,7 @@
 //! What a picture does not show by itself: why nothing is seen, what is cut off, what is not known.
 
 use iso_grid::{Fitted, Region, Surface, Workspace};
-use iso_render::{Camera, Size, StatusCounts};
+use iso_render::StatusCounts;
 
 use crate::failure::Failure;
 
@@ -9,9 +9,9 @@ use crate::failure::Failure;
 pub(crate) struct Drawn<'a> {
     pub(crate) surface: &'a Surface,
     pub(crate) fitted: Fitted,
-    pub(crate) camera: &'a Camera,
-    pub(crate) size: Size,
     pub(crate) pixels: StatusCounts,
+    /// How many rays meet the region.
+    pub(crate) rays_in_region: u64,
     /// Whether the method proves what it says.
     pub(crate) is_certified: bool,
     /// Whether colours tell what is not known.
@@ -54,7 +54,7 @@ impl Drawn<'_> {
                 "no point of the box, {shown}, is on the surface: try another --box or --level"
             ));
         }
-        if self.looks_past() {
+        if self.rays_in_region == 0 {
             return Ok(format!("the camera looks past the box, {shown}"));
         }
         if !self.is_certified {
@@ -63,14 +63,6 @@ impl Drawn<'_> {
         }
         let reasons = "it may consist of points and curves, or lie where the camera does not look";
         Ok(format!("no ray meets the surface in the box, {shown}: {reasons}"))
-    }
-
-    /// Whether no ray meets the region.
-    fn looks_past(&self) -> bool {
-        let Self { camera, size, fitted, .. } = self;
-        let mut rays =
-            (0..size.height()).flat_map(|row| (0..size.width()).map(move |column| camera.ray(column, row)));
-        rays.all(|ray| fitted.region.clip(&ray).is_none())
     }
 }
 

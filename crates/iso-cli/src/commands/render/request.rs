@@ -194,9 +194,15 @@ impl Request {
         phases.shade += 1e3 * picture.shade_seconds;
         counters += picture.counters;
         add_to(&mut phases.encode, || files.write(picture))?;
-        let (size, pixels, shows_status) = (self.drawn, picture.counts, self.shows_status);
-        let is_certified = matches!(plan.method(), Method::Certified { .. });
-        let drawn = Drawn { surface, fitted, camera: &camera, size, pixels, is_certified, shows_status };
+        let pixels = picture.counts;
+        let drawn = Drawn {
+            surface,
+            fitted,
+            pixels,
+            rays_in_region: picture.counters.rays_in_region,
+            is_certified: matches!(plan.method(), Method::Certified { .. }),
+            shows_status: self.shows_status,
+        };
         Ok(Some(Summary {
             files: files.names(),
             frame,
