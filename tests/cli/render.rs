@@ -74,7 +74,7 @@ fn notes_say_what_a_picture_does_not_show() {
         (SPHERE, &away, "the camera looks past the box"),
         ("(x - 0.1)^2 + y^2 + z^2 = 0", &["--box", "-2,2"], "it may consist of points and curves"),
         ("x^2 + y^2 = 1", &[], "the surface goes on outside of the box that is shown, x -1.09..1.09"),
-        ("floor(x^2 + y^2 + z^2) = 3", &[], "--show-status shows where"),
+        ("floor(x^2 + y^2 + z^2) = 3", &[], "in grey: --show-status paints them magenta"),
         ("x^2 + y^2 + z^2 = 1e-8", &["--box", "-2,2", "--method", "grid"], "--method certified proves"),
     ] {
         let notes = noted(formula, more);
@@ -163,6 +163,16 @@ fn statuses_are_shown_when_asked() {
     render(&case, double, &["-o", "plain.ppm", "-q"]).exits(0);
     render(&case, double, &["-o", "shown.ppm", "-q", "--show-status"]).exits(0);
     assert_ne!(case.content("plain.ppm"), case.content("shown.ppm"));
+}
+
+/// Neither like the surface nor like the background.
+#[test]
+fn what_is_undecided_is_grey() {
+    let case = Case::new();
+    render(&case, "floor(x^2 + y^2 + z^2) = 3", &["-o", "shell.ppm", "-q"]).exits(0);
+    let file = case.content("shell.ppm");
+    let pixels = &file[file.len() - 3 * 48 * 32..];
+    assert_eq!(pixels[3 * (16 * 48 + 24)..][..3], [112, 112, 118]);
 }
 
 #[test]

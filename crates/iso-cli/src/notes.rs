@@ -24,8 +24,7 @@ impl Drawn<'_> {
         let StatusCounts { hit, touch, undecided, unfinished, .. } = self.pixels;
         let mut notes = Vec::new();
         if undecided > 0 && !self.shows_status {
-            let problem = format!("{undecided} undecided, which looks like background");
-            notes.push(format!("{problem}: --show-status shows where"));
+            notes.push(format!("{undecided} undecided, in grey: --show-status paints them magenta"));
         }
         if hit + touch + undecided + unfinished == 0 {
             notes.push(format!("nothing is seen: {}", self.why_nothing()?));

@@ -18,6 +18,8 @@ pub struct Shading {
     inside: Color,
     /// The surface where no normal is known.
     unlit: Color,
+    /// Where it is not known whether there is a surface.
+    unknown: Color,
     background_top: Color,
     background_bottom: Color,
     /// How much of the ambient light comes from above rather than from all sides.
@@ -39,8 +41,8 @@ struct Light {
 const AMBIENT: f64 = 0.14;
 
 impl Shading {
-    /// The look of pictures by default, with lights around `camera`. With `statuses_shown`, pixels that are not a plain
-    /// hit or miss are painted over: touches green, undecided ones magenta.
+    /// The look of pictures by default, with lights around `camera`: undecided pixels are grey. With `statuses_shown`, pixels that are
+    /// not a plain hit or miss are painted over: touches green, undecided ones magenta.
     pub fn new(camera: &Camera, statuses_shown: bool) -> Self {
         let light = |right: f64, up: f64, back: f64, strength: f64, highlight: f64| {
             let towards = (right * camera.right() + up * camera.up() - back * camera.forward()).normalize();
@@ -51,6 +53,7 @@ impl Shading {
             outside: color_from_srgb([236, 156, 72]),
             inside: color_from_srgb([72, 138, 196]),
             unlit: color_from_srgb([150, 150, 150]),
+            unknown: color_from_srgb([112, 112, 118]),
             background_top: color_from_srgb([250, 251, 253]),
             background_bottom: color_from_srgb([206, 214, 224]),
             sky: camera.up(),
@@ -69,8 +72,8 @@ impl Shading {
         match outcome {
             Outcome::Miss => background,
             Outcome::Undecided(_) if self.statuses_shown => color_from_srgb([214, 40, 160]),
-            // Nothing is proven here, so nothing is drawn.
-            Outcome::Undecided(_) => background,
+            // Neither the surface nor its absence is proven, and neither is drawn.
+            Outcome::Undecided(_) => self.unknown,
             Outcome::Touch(_) if self.statuses_shown => {
                 let lit = self.surface(normal, view);
                 0.35 * lit + 0.65 * color_from_srgb([40, 170, 90])
