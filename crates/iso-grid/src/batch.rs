@@ -190,7 +190,7 @@ pub(crate) struct BoxBatch {
 
 impl BoxBatch {
     /// The boxes with these lower and upper corners, in place of all others.
-    pub(crate) fn replace<'a>(&mut self, corners: impl Iterator<Item = (&'a DVec3, &'a DVec3)> + Clone) {
+    pub(crate) fn replace(&mut self, corners: impl Iterator<Item = (DVec3, DVec3)> + Clone) {
         for axis in 0..3 {
             let (lo, hi) = (&mut self.lo[axis], &mut self.hi[axis]);
             lo.clear();

@@ -1,9 +1,11 @@
 //! A region for a surface of which nothing is known but its formula.
 
-use glam::{DVec3, IVec3};
-use iso_expr::engine::{Boxes, Enclosures};
-use iso_expr::{BoxKernel, CompileError, Decorated, Decoration, Interval};
+use std::ops::Range;
 
+use glam::{DVec3, IVec3};
+use iso_expr::{BoxKernel, CompileError, Decorated, Decoration};
+
+use crate::batch::BoxBatch;
 use crate::{Region, Surface, Workspace};
 
 /// Half the sides of the cubes around the origin in which the surface is looked for, one after the other.
@@ -12,8 +14,11 @@ const HALF_SIDES: [f64; 5] = [2.0, 8.0, 32.0, 128.0, 512.0];
 /// Those in which it is looked for if nothing is found in them, or if it is cut off in the last of them.
 const FARTHER: [f64; 6] = [2048.0, 8192.0, 32_768.0, 131_072.0, 524_288.0, 2_097_152.0];
 
-/// Cells of a cube along each axis that lie in the middle, where the cube before it lies.
-const MIDDLE: std::ops::Range<i32> = 6..10;
+/// Cells of a cube along each axis that lie in the cube before it.
+const BEFORE: Range<i32> = 6..10;
+
+/// Those that lie in its inner half.
+const INNER_HALF: Range<i32> = 4..12;
 
 /// Cells that may hold the surface are cut in halves this often to prove that they do,
 const HALVINGS_TO_PROVE: u32 = 5;
@@ -48,7 +53,7 @@ struct Glimpse {
     held: Region,
     /// On how many axes it meets faces of the cube.
     axes_met: usize,
-    /// Whether it is cut off, and nothing of it is in the middle of the cube.
+    /// Whether it is cut off, and nothing of it is in the cube's inner half.
     is_scrap: bool,
 }
 
@@ -63,8 +68,10 @@ impl Fitted {
     /// The least region that holds both, of surfaces that may be different ones. If it is larger than one of the two, what goes on outside of
     /// that may lie in it.
     pub fn hull(&self, other: &Self) -> Self {
-        let (min, max) = (self.region.min.min(other.region.min), self.region.max.max(other.region.max));
-        let region = Region { min, max };
+        let region = self
+            .region
+            .hull(&other.region)
+            .expect("regions that are fitted are no farther than 2²¹ from the origin");
         let is_both = self.region == region && other.region == region;
         Self { region, goes_on: is_both && self.goes_on && other.goes_on }
     }
@@ -103,7 +110,7 @@ impl Fitted {
             let is_whole = known.axes_met == 0;
             let is_better = if is_whole { found.axes_met == 0 } else { found.rank() < known.rank() };
             let mut has_more = || {
-                cells.retain(|cell| cell.to_array().iter().any(|along| !MIDDLE.contains(along)));
+                cells.retain(|cell| cell.to_array().iter().any(|along| !BEFORE.contains(along)));
                 cube.is_crossed(std::mem::take(&mut cells), (kernel, &is_stopped), workspace)
             };
             if is_better && (!is_whole || has_more()) {
@@ -145,8 +152,8 @@ impl Region {
     /// # Errors
     /// When the engine cannot compile the surface.
     pub fn enclosure(&self, surface: &Surface, workspace: &mut Workspace) -> Result<Decorated, CompileError> {
-        let corners = std::iter::once([self.min, self.max]);
-        Ok(enclose(&**surface.value_enclosures()?, workspace, corners)[0])
+        let corners = std::iter::once((self.min, self.max));
+        Ok(enclose(&**surface.value_enclosures()?, workspace, corners).decorated(0, 0))
     }
 
     /// Whether some of the surface may be in the region; if not, that is proven.
@@ -183,9 +190,8 @@ impl Region {
         let held = self.around(cells)?;
         let is_met = |&axis: &usize| held.min[axis] == self.min[axis] || held.max[axis] == self.max[axis];
         let axes_met = (0..3).filter(is_met).count();
-        let (least, most) = (1 << (HALVINGS - 2), 3 << (HALVINGS - 2));
-        let is_in_middle = |cell: &IVec3| cell.to_array().iter().all(|along| (least..most).contains(along));
-        Some(Glimpse { held, axes_met, is_scrap: axes_met > 0 && !cells.iter().any(is_in_middle) })
+        let is_inner = |cell: &IVec3| cell.to_array().iter().all(|along| INNER_HALF.contains(along));
+        Some(Glimpse { held, axes_met, is_scrap: axes_met > 0 && !cells.iter().any(is_inner) })
     }
 
     /// Whether the surface is found to have points in some of sixteen cells along each axis. If there are few, they are halved to find out.
@@ -219,14 +225,17 @@ impl Region {
         kernel: &dyn BoxKernel,
         workspace: &mut Workspace,
     ) -> bool {
-        let whole = enclose(kernel, workspace, cells.iter().map(|&cell| self.cell(cell, count)));
-        let corners =
-            cells.iter().flat_map(|cell| OCTANTS.map(|octant| [self.corner(cell + octant, count); 2]));
-        let corners = enclose(kernel, workspace, corners);
-        whole.iter().zip(corners.chunks(OCTANTS.len())).any(|(whole, corners)| {
-            whole.decoration >= Decoration::Continuous
-                && corners.iter().any(|corner| corner.interval.hi < 0.0)
-                && corners.iter().any(|corner| corner.interval.lo > 0.0)
+        let boxes = cells.iter().flat_map(|&cell| {
+            let corner = move |octant: IVec3| self.corner(cell + octant, count);
+            let corners = OCTANTS.map(|octant| (corner(octant), corner(octant)));
+            std::iter::once(self.cell(cell, count)).chain(corners)
+        });
+        let found = enclose(kernel, workspace, boxes);
+        (0..found.len()).step_by(1 + OCTANTS.len()).any(|cell| {
+            let mut corners = (cell + 1..=cell + OCTANTS.len()).map(|corner| found.interval(0, corner));
+            found.decorated(0, cell).decoration >= Decoration::Continuous
+                && corners.clone().any(|corner| corner.hi < 0.0)
+                && corners.any(|corner| corner.lo > 0.0)
         })
     }
 
@@ -239,14 +248,14 @@ impl Region {
         workspace: &mut Workspace,
     ) -> Vec<IVec3> {
         let found = enclose(kernel, workspace, cells.iter().map(|&cell| self.cell(cell, count)));
-        let mut may_hold = found.iter().map(|found| found.interval.contains_zero());
+        let mut may_hold = (0..found.len()).map(|cell| found.interval(0, cell).contains_zero());
         cells.retain(|_| may_hold.next() == Some(true));
         cells
     }
 
     /// The corners of a cell.
-    fn cell(&self, cell: IVec3, count: i32) -> [DVec3; 2] {
-        [self.corner(cell, count), self.corner(cell + 1, count)]
+    fn cell(&self, cell: IVec3, count: i32) -> (DVec3, DVec3) {
+        (self.corner(cell, count), self.corner(cell + 1, count))
     }
 
     /// The corner of a cell next to the region's least corner.
@@ -274,27 +283,16 @@ fn halved(cells: &[IVec3]) -> Vec<IVec3> {
 }
 
 /// Encloses F over boxes with these corners.
-fn enclose(
+fn enclose<'w>(
     kernel: &dyn BoxKernel,
-    workspace: &mut Workspace,
-    boxes: impl Iterator<Item = [DVec3; 2]> + Clone,
-) -> Vec<Decorated> {
-    let ends = |end: usize| {
-        [0, 1, 2].map(|axis| boxes.clone().map(|corners| corners[end][axis]).collect::<Vec<_>>())
-    };
-    let (lo, hi) = (ends(0), ends(1));
-    let count = lo[0].len();
-    let (mut below, mut above) = (vec![0.0; count], vec![0.0; count]);
-    let mut decorations = vec![Decoration::Trivial; count];
-    kernel.evaluate(
-        &mut workspace.scratch,
-        Boxes { lo: lo.each_ref().map(Vec::as_slice), hi: hi.each_ref().map(Vec::as_slice) },
-        Enclosures { lo: &mut below, hi: &mut above, decoration: &mut decorations },
-    );
-    workspace.counters.box_evaluations += count as u64;
-    let ends = below.into_iter().zip(above).map(|(lo, hi)| Interval { lo, hi });
-    let found = ends.zip(decorations);
-    found.map(|(interval, decoration)| Decorated { interval, decoration }).collect()
+    workspace: &'w mut Workspace,
+    boxes: impl Iterator<Item = (DVec3, DVec3)> + Clone,
+) -> &'w BoxBatch {
+    let Workspace { boxes: batch, scratch, counters, .. } = workspace;
+    batch.replace(boxes);
+    batch.evaluate(kernel, scratch, 1);
+    counters.box_evaluations += batch.len() as u64;
+    batch
 }
 
 fn cube(half_side: f64) -> Region {

@@ -123,12 +123,15 @@ impl Formula {
     /// When the engine cannot compile a kernel.
     pub(super) fn everywhere(surface: &Surface) -> Result<Self, CompileError> {
         let program = surface.program();
-        let (is_too_large, operations) = (program.operations() > Kernel::WITH_FORMS, program.operations());
-        if Kernel::are_left_to_places(program) {
-            let least_with_forms = if is_too_large { usize::MAX } else { operations / 2 };
+        let is_left_to_places = Kernel::are_left_to_places(program);
+        let least_with_forms = match program.operations() {
+            operations if operations > Kernel::WITH_FORMS => usize::MAX,
+            operations if is_left_to_places => operations / 2,
+            _ => 0,
+        };
+        if is_left_to_places {
             return Ok(Self::new(surface.made_for_few_runs(), Patience::limited(program), least_with_forms));
         }
-        let least_with_forms = if is_too_large { usize::MAX } else { 0 };
         Kernel::of_proofs(Kernel::Forms.pays(program)).try_for_each(|kernel| surface.compile(kernel))?;
         Ok(Self::new(surface.clone(), Patience::endless(), least_with_forms))
     }

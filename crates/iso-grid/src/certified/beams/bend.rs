@@ -218,7 +218,7 @@ mod tests {
     impl Kernels {
         /// F with its derivatives over a box.
         fn over(&mut self, lo: DVec3, hi: DVec3) -> [Decorated; 10] {
-            self.boxes.replace(std::iter::once((&lo, &hi)));
+            self.boxes.replace(std::iter::once((lo, hi)));
             let kernel = &**self.surface.hessian_enclosures().unwrap();
             self.boxes.evaluate(kernel, &mut self.scratch, 10);
             std::array::from_fn(|output| self.boxes.decorated(output, 0))

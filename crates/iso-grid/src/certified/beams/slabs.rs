@@ -240,7 +240,7 @@ impl Subdivision<'_> {
     fn drop_free(&mut self, slabs: &mut [Slab]) -> usize {
         let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
         let kernels = &self.kernels[slabs[0].kernels as usize];
-        boxes.replace(slabs.iter().map(|slab| (&slab.lo, &slab.hi)));
+        boxes.replace(slabs.iter().map(|slab| (slab.lo, slab.hi)));
         boxes.evaluate(kernels.values(), scratch, 1);
         counters.box_evaluations += slabs.len() as u64;
         counters.operations += kernels.charge(Kernel::ValueEnclosures, slabs.len());
@@ -260,7 +260,7 @@ impl Subdivision<'_> {
         let Some(&Slab { kernels, .. }) = slabs.first() else { return };
         let kernels = &self.kernels[kernels as usize];
         let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
-        boxes.replace(slabs.iter().map(|slab| (&slab.lo, &slab.hi)));
+        boxes.replace(slabs.iter().map(|slab| (slab.lo, slab.hi)));
         boxes.evaluate(kernels.gradients(), scratch, 4);
         counters.box_evaluations += slabs.len() as u64;
         counters.operations += kernels.charge(Kernel::GradientEnclosures, slabs.len());
@@ -272,7 +272,7 @@ impl Subdivision<'_> {
         let Some(&first) = open.first() else { return };
         let kernels = &self.kernels[slabs[first].kernels as usize];
         let Workspace { middles, scratch, counters, .. } = &mut *self.workspace;
-        middles.replace(open.iter().map(|number| (&slabs[*number].middle.1, &slabs[*number].middle.1)));
+        middles.replace(open.iter().map(|number| (slabs[*number].middle.1, slabs[*number].middle.1)));
         middles.evaluate(kernels.values(), scratch, 1);
         counters.box_evaluations += open.len() as u64;
         counters.operations += kernels.charge(Kernel::ValueEnclosures, open.len());

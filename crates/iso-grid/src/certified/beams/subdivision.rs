@@ -218,7 +218,7 @@ impl<'a> Subdivision<'a> {
     ) -> Option<[[Decorated; N]; COUNT]> {
         let kernels = &self.kernels[number as usize];
         let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
-        boxes.replace(bounds.iter().map(|(lo, hi)| (lo, hi)));
+        boxes.replace(bounds.iter().copied());
         boxes.evaluate(kernels.over_boxes(kernel)?, scratch, N);
         counters.box_evaluations += COUNT as u64;
         counters.operations += kernels.charge(kernel, COUNT);
