@@ -359,6 +359,22 @@ mod tests {
         }
     }
 
+    /// Intervals are wide here, so that all cells stay open, far from the sphere too; and a pole is no surface.
+    #[test]
+    fn what_is_not_proven_is_not_said_to_go_on() {
+        let sphere = "x^2 + y^2 + z^2 - 1 + 20((x - y)^2 - x^2 + 2x*y - y^2)";
+        for formula in [sphere, "1/(x - 20)"] {
+            assert!(!around(formula).goes_on, "{formula}");
+        }
+    }
+
+    /// Intervals are wide, and from a larger cube on the region would be: 1.125 instead of 35 of 32 parts.
+    #[test]
+    fn a_larger_cube_is_taken_only_if_it_holds_more() {
+        let region = fitted("x^2 + y^2 + z^2 - 1 + ((x - y)^2 - x^2 + 2x*y - y^2)/4");
+        assert_eq!((region.min(), region.max()), (DVec3::splat(-1.09375), DVec3::splat(1.09375)));
+    }
+
     #[test]
     fn what_is_far_away_is_looked_for_there() {
         assert_close(
