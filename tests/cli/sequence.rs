@@ -69,6 +69,21 @@ fn a_parameter_runs_from_end_to_end() {
 }
 
 #[test]
+fn what_several_pictures_do_not_show_is_said_once() {
+    let case = Case::new();
+    let sweep = ["--box", "-2,2", "--sweep", "a=-3:1", "--frames", "5", "--size", "16", "-o", "grow.ppm"];
+    let report =
+        case.run(&[&["render", "a := 1; x^2 + y^2 + z^2 = a"][..], &sweep].concat()).exits(0).stderr();
+    // With a = 0 there is a point, which no ray meets.
+    assert!(report.contains("note on 1 of them: nothing is seen: no ray meets the surface"), "{report}");
+    assert_eq!(
+        report.matches("note on 3 of them: nothing is seen: no point of the box").count(),
+        1,
+        "{report}"
+    );
+}
+
+#[test]
 fn a_parameter_that_changes_nothing_costs_nothing() {
     let formula = "a := 2; b := 3; x^2 + y^2 + z^2 = a";
     let json = sequence(&Case::new(), formula, &["--sweep", "b=0:1", "--frames", "2"]);
