@@ -21,10 +21,10 @@ const BEFORE: Range<i32> = 6..10;
 const INNER_HALF: Range<i32> = 4..12;
 
 /// Cells that may hold the surface are cut in halves this often to prove that they do,
-const HALVINGS_TO_PROVE: u32 = 5;
+const HALVINGS_TO_PROVE: u32 = 3;
 
 /// as long as there are no more of them; of more, some are looked at.
-const MOST_TO_PROVE: usize = 1000;
+const MOST_TO_PROVE: usize = 300;
 
 /// A region is cut in halves this often along each axis: 16 cells.
 const HALVINGS: u32 = 4;
@@ -82,7 +82,7 @@ impl Fitted {
     /// region is drawn around it in the first cube whose faces it does not meet, or in a larger one if that is proven to hold more of it
     /// and its faces are not met either. If there is none, that cube is taken where it meets the faces of the fewest axes, and
     /// [`Region::standard`] where nothing is found at all. Inside the cube that was taken nothing of the surface is left out. It is looked
-    /// for up to 512 from the origin, up to 8192 if it is cut off there, and up to 2²¹ if it is nowhere nearer.
+    /// for up to 512 from the origin, or up to 2²¹ if it is nowhere nearer, and one cube farther than the one that is taken.
     ///
     /// When the surface's [`Stop`](crate::Stop) is requested, any region.
     ///
@@ -91,20 +91,18 @@ impl Fitted {
     pub fn around(surface: &Surface, workspace: &mut Workspace) -> Result<Self, CompileError> {
         let kernel = &**surface.value_enclosures()?;
         let is_stopped = || surface.stop().is_requested();
-        let mut best: Option<Glimpse> = None;
+        let mut best: Option<(usize, Glimpse)> = None;
         let mut goes_on = false;
         for (number, half_side) in HALF_SIDES.into_iter().chain(FARTHER).enumerate() {
-            // What is cut off in the last of the nearer cubes is looked at in two more.
-            let is_known = best.as_ref().is_some_and(|best| best.axes_met == 0 || goes_on);
-            let enough = if is_known { HALF_SIDES.len() } else { HALF_SIDES.len() + 2 };
-            if is_stopped() || best.is_some() && number >= enough {
+            let is_enough = |(taken, _): &(usize, Glimpse)| number >= HALF_SIDES.len().max(taken + 2);
+            if is_stopped() || best.as_ref().is_some_and(is_enough) {
                 break;
             }
             let cube = cube(half_side);
             let mut cells = cube.open_cells(kernel, workspace);
             let Some(found) = cube.glimpse(&cells) else { continue };
-            let Some(known) = &best else {
-                best = Some(found);
+            let Some((taken, known)) = &best else {
+                best = Some((number, found));
                 continue;
             };
             let is_whole = known.axes_met == 0;
@@ -114,12 +112,13 @@ impl Fitted {
                 cube.is_crossed(std::mem::take(&mut cells), (kernel, &is_stopped), workspace)
             };
             if is_better && (!is_whole || has_more()) {
-                (best, goes_on) = (Some(found), false);
-            } else if !is_better && !goes_on {
+                (best, goes_on) = (Some((number, found)), false);
+            } else if !is_better && !goes_on && (is_whole || number == taken + 1) {
+                // What is cut off mostly goes on in the next cube, and farther out less is seen.
                 goes_on = has_more();
             }
         }
-        let close = |best: Glimpse| best.held.closed_in((kernel, &is_stopped), workspace);
+        let close = |(_, best): (usize, Glimpse)| best.held.closed_in((kernel, &is_stopped), workspace);
         Ok(Self { region: best.map_or_else(Region::standard, close), goes_on })
     }
 }
