@@ -5,11 +5,12 @@ use std::f64::consts::{LN_2, PI};
 use iso_expr::Operation;
 use iso_expr::random::Random;
 
-use super::{Approximation, ENTRIES, Table, WIDTH, exponential, logarithm, scalar, sine, x86};
+use super::{Approximation, ENTRIES, Table, WIDTH, cube_root, exponential, logarithm, scalar, sine, x86};
 
 type Approximate = fn(f64) -> Approximation;
 
-const FUNCTIONS: [(Operation, Approximate); 4] = [
+const FUNCTIONS: [(Operation, Approximate); 5] = [
+    (Operation::CubeRoot, |x| cube_root::cbrt(x, entry(&cube_root::ROOTS, cube_root::index(x)))),
     (Operation::Exp, |x| exponential::exp(x, entry(&exponential::POWERS, exponential::index(x)))),
     (Operation::Ln, |x| logarithm::ln(x, entry(&logarithm::LOGARITHMS, logarithm::index(x)))),
     (Operation::Sin, |x| sine::sin(x, entry(&sine::WAVE, sine::index(x)), 0)),

@@ -6,8 +6,8 @@ use std::mem::transmute;
 use iso_expr::Operation;
 
 use super::{
-    Approximation, Bounds, Column, ENTRIES, InPlace, InPlaceOfBoth, Table, WIDTH, exponential, logarithm,
-    scalar, sine,
+    Approximation, Bounds, Column, ENTRIES, InPlace, InPlaceOfBoth, Table, WIDTH, cube_root, exponential,
+    logarithm, scalar, sine,
 };
 
 /// The versions of a function that this processor runs, the fastest first.
@@ -40,6 +40,7 @@ macro_rules! compiled_for {
 
             pub(super) fn function(operation: Operation) -> Option<InPlace> {
                 match operation {
+                    Operation::CubeRoot => Some(cbrt),
                     Operation::Exp => Some(exp),
                     Operation::Ln => Some(ln),
                     Operation::Sin => Some(sin),
@@ -49,31 +50,32 @@ macro_rules! compiled_for {
             }
 
             #[target_feature(enable = $features)]
+            extern "C" fn cbrt(places: &mut [f64; WIDTH]) {
+                tabled(places, &cube_root::ROOTS, cube_root::index, cube_root::cbrt, Operation::CubeRoot);
+            }
+
+            #[target_feature(enable = $features)]
             extern "C" fn exp(places: &mut [f64; WIDTH]) {
-                let look_up = |column: &Column, indices: &[u64; WIDTH]| $look_up(column, indices);
-                let approximate = |_, x, entry| exponential::exp(x, entry);
-                round(
-                    places,
-                    &exponential::POWERS,
-                    exponential::index,
-                    look_up,
-                    approximate,
-                    [Operation::Exp; 2],
-                );
+                tabled(places, &exponential::POWERS, exponential::index, exponential::exp, Operation::Exp);
             }
 
             #[target_feature(enable = $features)]
             extern "C" fn ln(places: &mut [f64; WIDTH]) {
+                tabled(places, &logarithm::LOGARITHMS, logarithm::index, logarithm::ln, Operation::Ln);
+            }
+
+            /// The function of one operation, approximated from an argument and its entry.
+            #[target_feature(enable = $features)]
+            #[inline]
+            fn tabled<const COLUMNS: usize>(
+                places: &mut [f64; WIDTH],
+                table: &Table<COLUMNS>,
+                index: impl Fn(f64) -> u64,
+                approximate: impl Fn(f64, [f64; COLUMNS]) -> Approximation,
+                operation: Operation,
+            ) {
                 let look_up = |column: &Column, indices: &[u64; WIDTH]| $look_up(column, indices);
-                let approximate = |_, x, entry| logarithm::ln(x, entry);
-                round(
-                    places,
-                    &logarithm::LOGARITHMS,
-                    logarithm::index,
-                    look_up,
-                    approximate,
-                    [Operation::Ln; 2],
-                );
+                round(places, table, index, look_up, |_, x, entry| approximate(x, entry), [operation; 2]);
             }
 
             #[target_feature(enable = $features)]
