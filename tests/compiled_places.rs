@@ -69,8 +69,9 @@ fn compiled_places_end_rays_as_interpreted_ones_do() {
     }
 }
 
-/// A waist at which F is not monotone, so that what forms say too little of is asked for often.
-const HEART: &str = "(x^2 + 2.25y^2 + z^2 - 1)^3 - x^2 z^3 - 0.1125y^2 z^3";
+/// A waist near which F is not monotone, so that what forms say too little of is asked for often. For the last term this is no difference
+/// of cubes.
+const HEART: &str = "(x^2 + 2.25y^2 + z^2 - 1)^3 - x^2 z^3 - 0.1125y^2 z^3 - 1e-9";
 
 #[test]
 fn kernels_that_are_asked_for_seldom_are_compiled_when_they_were_asked_for_often() {

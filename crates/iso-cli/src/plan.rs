@@ -69,6 +69,9 @@ struct Operations {
     before: usize,
     /// After simplification.
     after: usize,
+    /// Of another function with the same signs, if rays are followed by one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    by_signs: Option<usize>,
 }
 
 /// A decision.
@@ -85,13 +88,16 @@ struct Line {
 impl PlanReport {
     /// What `plan` decides for `surface`, whose program took `before` operations before it was simplified.
     pub(crate) fn new(plan: &Plan, surface: &Surface, before: usize) -> Self {
+        let followed = plan.followed(surface);
         let kernels = plan.kernels().iter().map(|decision| {
-            let operations = decision.taken.then(|| surface.program_of(decision.subject).operations());
+            let operations = decision.taken.then(|| followed.program_of(decision.subject).operations());
             Line { operations, ..Line::new(decision, Kernel::name) }
         });
+        let [after, by_signs] = [surface, followed].map(|surface| surface.program().operations());
+        let by_signs = (surface.program() != followed.program()).then_some(by_signs);
         Self {
             method: plan.method().name(),
-            operations: Operations { before, after: surface.program().operations() },
+            operations: Operations { before, after, by_signs },
             arguments: lines(plan.arguments(), Axis::name),
             constants: lines(plan.constants(), Given::name),
             kernels: kernels.collect(),
@@ -109,7 +115,7 @@ impl PlanReport {
 
     /// Writes the plan for people: a line for each decision.
     pub(crate) fn write(&self, writer: &mut dyn Write) -> io::Result<()> {
-        let Operations { before, after } = self.operations;
+        let Operations { before, after, by_signs } = self.operations;
         writeln!(
             writer,
             "plan: kernels compiled {}, passes skipped {}",
@@ -120,6 +126,12 @@ impl PlanReport {
             "    method {}; F − C takes {after} operations, {before} before simplification",
             self.method
         )?;
+        if let Some(operations) = by_signs {
+            writeln!(
+                writer,
+                "    rays are followed by {operations} operations with its signs: cubes are told by what is cubed"
+            )?;
+        }
         for (title, lines) in [
             ("arguments", &self.arguments),
             ("constants", &self.constants),
@@ -134,7 +146,7 @@ impl PlanReport {
     }
 }
 
-/// How many kernels of a surface are compiled by now.
+/// How many kernels of the surface that is followed are compiled by now.
 pub(crate) fn kernels_compiled(surface: &Surface) -> usize {
     Kernel::ALL.into_iter().filter(|kernel| surface.is_compiled(*kernel)).count()
 }

@@ -89,6 +89,7 @@ impl Fitted {
     /// # Errors
     /// When the engine cannot compile the surface.
     pub fn around(surface: &Surface, workspace: &mut Workspace) -> Result<Self, CompileError> {
+        let surface = surface.by_signs();
         let kernel = &**surface.value_enclosures()?;
         let is_stopped = || surface.stop().is_requested();
         let mut best: Option<(usize, Glimpse)> = None;
@@ -160,7 +161,7 @@ impl Region {
     /// # Errors
     /// When the engine cannot compile the surface.
     pub fn may_hold(&self, surface: &Surface, workspace: &mut Workspace) -> Result<bool, CompileError> {
-        Ok(!self.open_cells(&**surface.value_enclosures()?, workspace).is_empty())
+        Ok(!self.open_cells(&**surface.by_signs().value_enclosures()?, workspace).is_empty())
     }
 
     /// The cells, sixteen along each axis, that may hold the surface.

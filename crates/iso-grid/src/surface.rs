@@ -21,6 +21,8 @@ pub struct Surface {
     programs: Arc<Programs>,
     kernels: Arc<Compiled>,
     cells: Arc<Mutex<Option<CellsOfRegion>>>,
+    /// The one with the same signs, `None` when it is this one.
+    by_signs: Arc<OnceLock<Option<Surface>>>,
     stop: Stop,
 }
 
@@ -61,18 +63,33 @@ impl Surface {
             programs: Arc::default(),
             kernels: Arc::default(),
             cells: Arc::default(),
+            by_signs: Arc::default(),
             stop: Stop::default(),
         }
     }
 
     /// The same surface, on which all work ends when `stop` is requested.
     pub fn stopped_by(self, stop: Stop) -> Self {
-        Self { stop, ..self }
+        Self { stop, by_signs: Arc::default(), ..self }
     }
 
     /// What ends work on this surface.
     pub fn stop(&self) -> &Stop {
         &self.stop
+    }
+
+    /// The same surface for methods that ask of F − C no more than its sign and where it is zero: that of
+    /// [another function](Program::without_cubes) with the same signs if that has slopes where F − C has none, else this one.
+    pub fn by_signs(&self) -> &Self {
+        let find = || {
+            let value = self.value.without_cubes();
+            let engine = Arc::clone(&self.engine);
+            (value != self.value).then(|| Self {
+                many: self.many.clone(),
+                ..Self::new(engine, value).stopped_by(self.stop.clone())
+            })
+        };
+        self.by_signs.get_or_init(find).as_ref().unwrap_or(self)
     }
 
     /// What is known of the cells of `region`. That of the last region asked for is kept.

@@ -8,7 +8,7 @@ use iso_expr::{Ast, Interpreter, Program};
 use iso_grid::{Certified, Hit, Outcome, Raster, Ray, Region, Span, Surface, Tile, Tracer, Workspace};
 
 /// Formulas, half sides of their regions, and what they are tried for.
-const SCENES: [(&str, f64, &str); 39] = [
+const SCENES: [(&str, f64, &str); 40] = [
     ("(x^2+y^2-1)^2 + 4z^2 + 0.5x - 0.2", 1.5, "a classic"),
     ("x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8", 2.6, "parts in front of each other"),
     ("sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)", 5.0, "cut by the region's faces"),
@@ -29,7 +29,8 @@ const SCENES: [(&str, f64, &str); 39] = [
     ("max(0, x^2+y^2+z^2-1)", 1.5, "a plateau"),
     (BALLS, 1.6, "a union of balls"),
     (BOX, 1.6, "a rounded box with a hole, smoothly blended with a ball"),
-    ("(x^2+2.25y^2+z^2-1)^3 - x^2 z^3 - 0.1125y^2 z^3", 1.5, "a heart, flat along a curve"),
+    ("(x^2+2.25y^2+z^2-1)^3 - x^2 z^3 - 0.1125y^2 z^3", 1.5, "a heart, told by roots of cubes"),
+    ("(x^2+2.25y^2+z^2-1)^3 - x^2 z^3 - 0.1125y^2 z^3 - 1e-9", 1.5, "a heart, all but flat along a curve"),
     ("3.5 - 1/((x-0.9)^2+y^2+z^2) - 1/((x+0.9)^2+y^2+z^2) - 1/(x^2+(y-0.8)^2+z^2)", 2.2, "poles inside"),
     ("max(sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x), x^2+y^2+z^2-9)", 3.2, "curved edges"),
     ("max(x^2+y^2+z^2-1, x+y-0.4, 0.2-x-y, z-0.5)", 1.5, "a slice with sharp edges"),

@@ -139,6 +139,8 @@ impl Buffer {
 impl Plan {
     /// Decides what a picture takes.
     pub fn new(wanted: &Wanted<'_>) -> Self {
+        let followed = is_certified(&wanted.method).then(|| wanted.program.without_cubes());
+        let wanted = &Wanted { program: followed.as_ref().unwrap_or(wanted.program), ..*wanted };
         Self {
             method: wanted.method,
             layers: wanted.layers,
@@ -223,7 +225,14 @@ impl Plan {
     /// # Errors
     /// When the engine cannot compile one.
     pub fn compile(&self, surface: &Surface) -> Result<(), CompileError> {
+        let surface = self.followed(surface);
         self.compiled_ahead().try_for_each(|kernel| surface.compile(kernel))
+    }
+
+    /// The surface by whose kernels the method follows rays and normals are found: the one that is given, or another one with
+    /// [the same signs](Surface::by_signs).
+    pub fn followed<'a>(&self, surface: &'a Surface) -> &'a Surface {
+        if is_certified(&self.method) { surface.by_signs() } else { surface }
     }
 
     /// Prepares the method for a surface in a region.
@@ -233,6 +242,10 @@ impl Plan {
     pub fn tracer(&self, surface: &Surface, region: Region) -> Result<Box<dyn Tracer>, GridError> {
         self.method.prepare(surface, region)
     }
+}
+
+fn is_certified(method: &Method) -> bool {
+    matches!(method, Method::Certified { .. })
 }
 
 /// Whether something is taken, and why.
@@ -277,7 +290,7 @@ impl Wanted<'_> {
     }
 
     fn is_certified(&self) -> bool {
-        matches!(self.method, Method::Certified { .. })
+        is_certified(&self.method)
     }
 
     fn is_left_to_places(&self) -> bool {

@@ -183,7 +183,14 @@ impl Tile {
         let is_empty = self.counts.miss == rays.len() as u64;
         self.content = if is_empty { Content::Nothing } else { Content::Found };
         if are_normals_wanted && !is_empty {
-            iso_grid::normals(scene.surface, Some(scene.tracer), workspace, rays, outcomes, normals)?;
+            iso_grid::normals(
+                scene.plan.followed(scene.surface),
+                Some(scene.tracer),
+                workspace,
+                rays,
+                outcomes,
+                normals,
+            )?;
         }
         if scene.plan.runs(Pass::Shade) {
             self.shade(scene.shading, rays, size);

@@ -105,23 +105,32 @@ fn sections(flags: &ExplainFlags) -> Result<Vec<(Section, Shown)>, Failure> {
     let (formula, program) = lowered?;
     let hints = timed(|| hints(&program));
     let simplified = timed(|| program.simplified());
-    let gradient = timed(|| simplified.0.with_gradient().simplified());
-    let native = native_stages(flags, &simplified.0)?;
+    let surface = Surface::new(Arc::new(Interpreter), simplified.0.clone());
+    let plan = plan(picture, &formula, &simplified.0)?;
+    let (followed, time) = timed(|| plan.followed(&surface).program().clone());
+    let signs = (followed != simplified.0).then(|| Stage::program(&(followed.clone(), time)));
+    let gradient = timed(|| followed.with_gradient().simplified());
+    let native = native_stages(flags, &followed)?;
     // A model has no tree: its lines are the program.
     let tree = match &text {
         Text::Formula(ast) => ast.outline().to_string(),
         Text::Model(_) => String::new(),
     };
-    let surface = Surface::new(Arc::new(Interpreter), simplified.0.clone());
-    let plan = PlanReport::new(&plan(picture, &formula, &simplified.0)?, &surface, program.operations());
+    let plan = PlanReport::new(&plan, &surface, program.operations());
     let stages = [
         (Section::Tree, Stage::new(tree.lines().count(), "lines", parse_time, tree)),
         (Section::Program, Stage::program(&(program, lower_time))),
         (Section::Hints, Stage::hints(&hints)),
         (Section::Simplified, Stage::program(&simplified)),
-        (Section::Gradient, Stage::program(&gradient)),
     ];
-    let stages = stages.into_iter().chain(native).map(|(section, stage)| (section, Shown::Stage(stage)));
+    let signs = signs.map(|signs| (Section::Signs, signs));
+    let gradient = (Section::Gradient, Stage::program(&gradient));
+    let stages = stages
+        .into_iter()
+        .chain(signs)
+        .chain([gradient])
+        .chain(native)
+        .map(|(section, stage)| (section, Shown::Stage(stage)));
     Ok([(Section::Plan, Shown::Plan(plan))].into_iter().chain(stages).collect())
 }
 

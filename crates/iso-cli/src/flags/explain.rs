@@ -48,7 +48,9 @@ pub(crate) enum Section {
     Hints,
     /// The program after simplification
     Simplified,
-    /// The program with its three derivatives, after simplification
+    /// A program with the same signs, if that is what rays are followed by
+    Signs,
+    /// The program that rays are followed by with its three derivatives, after simplification
     Gradient,
     /// Cranelift's intermediate code
     #[cfg(feature = "jit")]

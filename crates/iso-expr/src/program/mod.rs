@@ -1,5 +1,6 @@
 //! Programs: hash-consed, straight-line descriptions of what is to be evaluated.
 
+mod cubes;
 mod display;
 mod extreme;
 mod forms;

@@ -39,7 +39,8 @@ use walk::Walk;
 
 /// The method that proves what it says, by interval arithmetic rounded outwards.
 ///
-/// What is proven is about real arithmetic on the exact doubles of the formula, the ray and the region:
+/// What is proven is about real arithmetic on the exact doubles of the formula, the ray and the region. F is the formula's function or
+/// [another one with its signs](Surface::by_signs):
 /// - [`Outcome::Hit`]: F is continuous and strictly monotone on the bracket, it has a root there, a simple one, inside
 ///   the region, and no point of the region before it is a root;
 /// - [`Outcome::Touch`]: no point of the region before the bracket is a root, and in the bracket, which cannot be split
@@ -81,12 +82,13 @@ impl Certified {
     /// # Errors
     /// When the engine cannot compile the surface.
     pub fn new(surface: &Surface, region: Region) -> Result<Self, CompileError> {
-        let kernels = Arc::new(Kernels::of(surface)?);
+        let by_signs = surface.by_signs();
+        let kernels = Arc::new(Kernels::of(by_signs)?);
         Ok(Self {
             places: Places::new(&kernels, &region),
             kernels,
             polynomial: Polynomial::of(surface.program()),
-            cells: surface.cells(&region),
+            cells: by_signs.cells(&region),
             region,
             accuracy: Self::ACCURACY,
             stop: surface.stop().clone(),

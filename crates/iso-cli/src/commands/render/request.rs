@@ -143,7 +143,7 @@ impl Request {
             if before.as_ref().is_some_and(|before| Arc::ptr_eq(before, subject)) {
                 continue;
             }
-            add_to(&mut phases.compile, || subject.surface.compile(Kernel::ValueEnclosures))?;
+            add_to(&mut phases.compile, || subject.surface.by_signs().compile(Kernel::ValueEnclosures))?;
             let fitted = add_to(&mut phases.preprocess, || fitted(&subject.surface))?;
             hull = Some(hull.map_or(fitted, |hull| hull.hull(&fitted)));
             before = Some(Arc::clone(subject));
@@ -166,8 +166,9 @@ impl Request {
         let region = fitted.region;
         let camera = camera(&flags, &region, self.drawn)?;
         let mut counters = Counters::default();
+        let followed = plan.followed(surface);
         let known = prepared.take().filter(|known| Arc::ptr_eq(&known.subject, &subject));
-        let kernels_before = if known.is_some() { kernels_compiled(surface) } else { 0 };
+        let kernels_before = if known.is_some() { kernels_compiled(followed) } else { 0 };
         let known = match known {
             Some(known) => known,
             None => {
@@ -216,9 +217,9 @@ impl Request {
             operations: surface.program().operations(),
             gradient_operations: plan
                 .takes_gradient()
-                .then(|| surface.program_of(Kernel::Gradients).operations()),
+                .then(|| followed.program_of(Kernel::Gradients).operations()),
             plan: PlanReport::new(plan, surface, *operations_before)
-                .after(kernels_compiled(surface) - kernels_before),
+                .after(kernels_compiled(followed) - kernels_before),
             pixels,
             counters,
             milliseconds: phases,

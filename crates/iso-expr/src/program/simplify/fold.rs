@@ -46,6 +46,10 @@ fn is_exact(operation: Operation, a: f64, b: f64, value: f64) -> bool {
         Op::Divide => product_is_exact(value, b, a),
         Op::IntegerPower => power_is_exact(a, b, value),
         Op::SquareRoot => product_is_exact(value, value, a),
+        Op::CubeRoot => {
+            let square = value * value;
+            product_is_exact(value, value, square) && product_is_exact(square, value, a)
+        }
         Op::Negate | Op::Absolute | Op::Sign | Op::Minimum | Op::Maximum => true,
         Op::Floor | Op::Ceil | Op::Round | Op::Truncate => true,
         Op::Less | Op::LessOrEqual | Op::Equal | Op::Select => true,
@@ -99,6 +103,7 @@ mod tests {
             ("1.5 * 2.5", 3.75),
             ("9 / 4", 2.25),
             ("sqrt(2.25)", 1.5),
+            ("cbrt(-3.375)", -1.5),
             ("3^2", 9.0),
             ("(-1.5)^3", -3.375),
             ("2^-3", 0.125),
@@ -120,6 +125,7 @@ mod tests {
             ("0.1 + 0.2", 0.3, 0.3_f64.next_up()),
             ("1e-200 * 1e-100 * 1e-20", 1e-320_f64.next_down(), 1e-320_f64.next_up()),
             ("2 * pi", std::f64::consts::TAU, std::f64::consts::TAU.next_up()),
+            ("cbrt(4)", 1.587_401_051_968_199_4, 1.587_401_051_968_199_7),
             ("ln(2)", std::f64::consts::LN_2, std::f64::consts::LN_2.next_up()),
             (
                 "3^40",
