@@ -77,6 +77,12 @@ impl<S: Simd> Lanes<S> {
         Mask { simd: self.simd, mask: self.simd.equal_f64s(self.numbers, other.numbers) }
     }
 
+    /// The greatest of the numbers, none of which is NaN.
+    #[inline(always)]
+    pub(crate) fn greatest(self) -> f64 {
+        self.simd.reduce_max_f64s(self.numbers)
+    }
+
     /// The nearest numbers between two others; NaN where these are NaN.
     #[inline(always)]
     pub(crate) fn between(self, least: Self, most: Self) -> Self {
@@ -90,12 +96,6 @@ impl<S: Simd> Mask<S> {
     #[inline(always)]
     pub(crate) fn select(self, yes: Lanes<S>, no: Lanes<S>) -> Lanes<S> {
         Lanes { numbers: self.simd.select_f64s(self.mask, yes.numbers, no.numbers), ..yes }
-    }
-
-    /// Whether this is so anywhere.
-    #[inline(always)]
-    pub(crate) fn is_anywhere(self) -> bool {
-        self.simd.first_true_m64s(self.mask) < S::F64_LANES
     }
 }
 

@@ -55,10 +55,22 @@ const NEAR: f64 = 64.0;
 enum Need {
     /// Nothing: no ray is open.
     Nothing,
-    /// Its value and its slope, to come nearer.
-    Slopes,
     /// What is wanted where rays meet the surface, for that is where they are likely to be.
     Last,
+    /// Its value and its slope, to come nearer.
+    Slopes,
+}
+
+impl Need {
+    /// That of a bundle, where that of each ray is the number at which it stands above.
+    #[inline(always)]
+    fn of(greatest: f64) -> Self {
+        match greatest {
+            2.0.. => Self::Slopes,
+            1.0.. => Self::Last,
+            _ => Self::Nothing,
+        }
+    }
 }
 
 /// What a double computed for F says about the root, all over a part.
@@ -76,26 +88,42 @@ pub(super) struct Sight {
 }
 
 impl Bundle {
-    /// Room for other rays.
-    pub(super) fn clear(&mut self) {
-        (self.columns, self.rows) = Default::default();
-        self.state = [state::FREE; ROW];
-    }
-
-    /// Puts a ray in a lane: its place in the tile, its column and its row, where a root is wanted, and where the part's
-    /// certificate holds.
+    /// The next rays of a tile in place of others, those of them that are open, by their columns and rows: where roots are wanted, and where
+    /// the part's certificate holds.
     #[inline]
-    pub(super) fn put(
+    pub(super) fn fill(
         &mut self,
-        lane: usize,
-        (place, column, row): (usize, usize, usize),
+        rays: &mut impl Iterator<Item = (usize, usize)>,
+        (open, width): (&[bool], usize),
         [wanted, reach]: [Span; 2],
     ) {
-        self.places[lane] = place as u32;
-        (self.columns[lane], self.rows[lane]) = (column as f64, row as f64);
-        (self.wanted[0][lane], self.wanted[1][lane]) = (wanted.start, wanted.end);
-        (self.reach[0][lane], self.reach[1][lane]) = (reach.start, reach.end);
-        self.state[lane] = state::OPEN;
+        (self.columns, self.rows, self.state) = ([0.0; ROW], [0.0; ROW], [state::FREE; ROW]);
+        self.wanted = [[wanted.start; ROW], [wanted.end; ROW]];
+        self.reach = [[reach.start; ROW], [reach.end; ROW]];
+        for lane in 0..ROW {
+            let Some((column, row)) = rays.next() else { break };
+            let place = row * width + column;
+            self.places[lane] = place as u32;
+            (self.columns[lane], self.rows[lane]) = (column as f64, row as f64);
+            self.state[lane] = if open[place] { state::OPEN } else { state::FREE };
+        }
+    }
+
+    /// Narrows where roots are wanted, and where the certificate holds, along each open ray to what is `within`, given its column and row.
+    /// A ray without it is left out.
+    pub(super) fn clip(&mut self, mut within: impl FnMut(usize, usize) -> Option<[Span; 2]>) {
+        for lane in 0..ROW {
+            if self.state[lane] != state::OPEN {
+                continue;
+            }
+            match within(self.columns[lane] as usize, self.rows[lane] as usize) {
+                Some([wanted, reach]) => {
+                    (self.wanted[0][lane], self.wanted[1][lane]) = (wanted.start, wanted.end);
+                    (self.reach[0][lane], self.reach[1][lane]) = (reach.start, reach.end);
+                }
+                None => self.state[lane] = state::FREE,
+            }
+        }
     }
 
     /// How each ray ended that may have a root.
@@ -118,10 +146,8 @@ impl Bundle {
         simd: S,
         Start { tile, model, middle, within: [least, most] }: &Start<'_>,
     ) -> bool {
-        self.rays = tile.row(simd, &self.columns, &self.rows);
-        (self.value, self.step) = ([f64::NAN; ROW], [f64::INFINITY; ROW]);
         let all = |number| Lanes::all(simd, number);
-        let mut are_open = false;
+        let mut most_open = all(0.0);
         for part in 0..parts::<S>() {
             let at = |row: &Row| Lanes::of(simd, row, part);
             let (across, along) = (at(&self.columns) - all(middle.0), at(&self.rows) - all(middle.1));
@@ -130,7 +156,12 @@ impl Bundle {
             t.between(at(&self.reach[0]), at(&self.reach[1])).put(&mut self.t, part);
             let state = is_far.select(all(state::FREE), at(&self.state));
             state.put(&mut self.state, part);
-            are_open |= state.is_same(all(state::OPEN)).is_anywhere();
+            most_open = state.is_same(all(state::OPEN)).select(all(1.0), most_open);
+        }
+        let are_open = most_open.greatest() > 0.0;
+        if are_open {
+            self.rays = tile.row(simd, &self.columns, &self.rows);
+            (self.value, self.step) = ([f64::NAN; ROW], [f64::INFINITY; ROW]);
         }
         are_open
     }
@@ -143,7 +174,9 @@ impl Bundle {
         let all = |number| Lanes::all(simd, number);
         let [free, open] = [all(state::FREE), all(state::OPEN)];
         let [hit, lost] = [all(state::HIT), all(state::LOST)];
-        let (mut are_open, mut are_far) = (false, false);
+        let [nothing, last, another] =
+            [Need::Nothing, Need::Last, Need::Slopes].map(|need| all(f64::from(need as u8)));
+        let mut needed = nothing;
         for part in 0..parts::<S>() {
             let at = |row: &Row| Lanes::of(simd, row, part);
             let (t, value, before) = (at(&self.t), at(values), at(&self.state));
@@ -188,14 +221,10 @@ impl Bundle {
             if slopes.is_some() { step } else { before_that + step }.put(&mut self.step, part);
             let state = was_open.select(state, before);
             state.put(&mut self.state, part);
-            are_open |= state.is_same(open).is_anywhere();
-            are_far |= (state.is_same(open) & is_far).is_anywhere();
+            needed =
+                state.is_same(open).select(is_far.select(another, needed.between(last, another)), needed);
         }
-        match (are_open, are_far) {
-            (false, _) => Need::Nothing,
-            (true, true) => Need::Slopes,
-            (true, false) => Need::Last,
-        }
+        Need::of(needed.greatest())
     }
 
     /// About where the root is by the value and the slope of F at t, and at the last place: by Newton's method at first, and then by
@@ -375,8 +404,8 @@ mod tests {
         let sight = Sight { inverse: -0.5, unevenness: 0.3, bend: 0.5, blur: 1e-15, tolerance: 1e-12 };
         let mut bundles = vec![Bundle::default(); 9];
         for (row, bundle) in bundles.iter_mut().enumerate().take(8) {
-            bundle.clear();
-            for column in 0..8 {
+            bundle.fill(&mut (0..8).map(|column| (column, row)), (&[true; 64], 8), [Span::default(); 2]);
+            bundle.clip(|column, row| {
                 // The last row's roots lie before what is wanted, the fifth's before where F may be looked at, and the sixth's right
                 // before that.
                 let from = if row == 7 { 4.3 } else { 3.9 };
@@ -387,10 +416,8 @@ mod tests {
                     _ => from,
                 };
                 let reach = Span { start: begin, end: 4.7 };
-                if (row, column) != (2, 3) {
-                    bundle.put(column, (8 * row + column, column, row), [wanted, reach]);
-                }
-            }
+                ((row, column) != (2, 3)).then_some([wanted, reach])
+            });
         }
         let start = &Start {
             tile: &tile,
@@ -429,8 +456,7 @@ mod tests {
         let simd = Scalar::new();
         let (wanted, reach) = (Span { start: 0.5, end: 1.5 }, Span { start: 0.0, end: 2.0 });
         let mut bundle = Bundle::default();
-        bundle.clear();
-        bundle.put(0, (1, 0, 0), [wanted, reach]);
+        bundle.fill(&mut [(1, 0)].into_iter(), (&[true; 2], 2), [wanted, reach]);
         // F is t − 1, and was not taken near its root.
         (bundle.t[0], bundle.inverse[0]) = (1.0 + 1e-6, 1.0);
         let sight = Sight { inverse: 1.0, unevenness: 1e-9, bend: 1e-9, blur: 0.0, tolerance: 1e-12 };

@@ -159,29 +159,18 @@ impl Subdivision<'_> {
     /// Bundles the rays of a part that are still followed, and counts the bundles. Those that may have a root so near to a face of
     /// the region that no point inside is known are searched each for its own.
     fn bundle(&mut self, part: &Part, model: &Model, bundles: &mut Vec<Bundle>) -> usize {
-        let Beam { area, radii: [across, along], .. } = *self.beam(part.beam);
-        bundles.resize_with(bundles.len().max((area.width * area.height).div_ceil(ROW)), Bundle::default);
-        let (wanted, reach) = (part.stretch, part.form.reach);
-        let mut count = 0;
-        let mut lane = ROW;
-        for (row, b) in area.rows().zip(halves_from(-along)) {
-            for (column, a) in area.columns().zip(halves_from(-across)) {
-                if lane == ROW {
-                    bundles[count].clear();
-                    count += 1;
-                    lane = 0;
-                }
-                let place = row * self.tile.width() + column;
-                if self.memory.open[place] {
-                    let mut within = Some([wanted, reach]);
-                    if !part.is_inside {
-                        within = self.clipped(part, (column, row), (model, model.at(a, b)));
-                    }
-                    if let Some(within) = within {
-                        bundles[count - 1].put(lane, (place, column, row), within);
-                    }
-                }
-                lane += 1;
+        let area = self.beam(part.beam).area;
+        let count = (area.width * area.height).div_ceil(ROW);
+        bundles.resize_with(bundles.len().max(count), Bundle::default);
+        let mut rays = area.rows().flat_map(|row| area.columns().map(move |column| (column, row)));
+        for bundle in &mut bundles[..count] {
+            let open = (&self.memory.open[..], self.tile.width());
+            bundle.fill(&mut rays, open, [part.stretch, part.form.reach]);
+            if !part.is_inside {
+                bundle.clip(|column, row| {
+                    let (a, b) = area.offset(column, row);
+                    self.clipped(part, (column, row), (model, model.at(a, b)))
+                });
             }
         }
         count
