@@ -5,6 +5,24 @@ use crate::harness::Case;
 const PAPER: &str = "(x^2+y^2-1)^2 + 4z^2 + 0.5x = 0.2";
 const SECTIONS: [&str; 6] = ["tree", "program", "simplified", "gradient", "clif", "assembly"];
 
+/// A heart is a difference of cubes.
+#[test]
+fn a_function_with_the_same_signs_is_shown_where_rays_are_followed_by_one() {
+    let case = Case::new();
+    let heart = "(x^2 + 9/4y^2 + z^2 - 1)^3 = (x^2 + 9/80y^2) z^3";
+    let explained = |formula: &str, more: &[&str]| {
+        let flags = [&["explain", formula, "--json"], more].concat();
+        case.run(&flags).exits(0).json()
+    };
+    let json = explained(heart, &[]);
+    assert!(json["signs"]["text"].as_str().unwrap().contains("cbrt"));
+    assert_eq!(json["signs"]["size"], json["plan"]["operations"]["by_signs"]);
+    for (formula, flags) in [(PAPER, vec![]), (heart, vec!["--method", "grid"])] {
+        let json = explained(formula, &flags);
+        assert!(json["signs"].is_null() && json["plan"]["operations"]["by_signs"].is_null(), "{formula}");
+    }
+}
+
 #[test]
 fn every_stage_is_shown() {
     let case = Case::new();

@@ -50,6 +50,27 @@ fn the_picture_shows_the_sphere() {
     assert_eq!(json["pixels"]["undecided"], 0);
 }
 
+/// Of a sphere in the middle that reaches to 0.88 of the picture's edge; in a box that was asked for, the box does to 0.96.
+#[test]
+fn the_surface_fills_the_picture_and_a_box_does_where_it_is_given() {
+    let case = Case::new();
+    let hits = |formula: &str, more: &[&str]| {
+        let flags = [&["--ortho", "--size", "200x200", "--json"], more].concat();
+        render(&case, formula, &flags).exits(0).json()["pixels"]["hit"].as_f64().unwrap()
+    };
+    let area = std::f64::consts::PI * 88.0 * 88.0;
+    for formula in [SPHERE, "(x - 70)^2 + y^2 + (z + 1)^2 = 0.01"] {
+        let hits = hits(formula, &[]);
+        assert!((0.97 * area..1.03 * area).contains(&hits), "{formula}: {hits} pixels of {area}");
+    }
+    let steiner = hits("x^2 y^2 + y^2 z^2 + z^2 x^2 = x y z", &[]);
+    assert!(steiner > 0.25 * 4e4, "{steiner} pixels");
+    let along_y = ["--yaw", "0", "--pitch", "0", "--box", "-2,2"];
+    let area = std::f64::consts::PI * 48.0 * 48.0;
+    let in_box = hits(SPHERE, &along_y);
+    assert!((in_box - area).abs() < 30.0, "{in_box} pixels of {area}");
+}
+
 /// A picture in which something is missing says why.
 #[test]
 fn notes_say_what_a_picture_does_not_show() {

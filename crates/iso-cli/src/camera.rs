@@ -1,26 +1,26 @@
 //! From the camera's flags to a view and a projection.
 
 use glam::DVec3;
-use iso_grid::Region;
+use iso_grid::Fitted;
 use iso_render::{Camera, CameraError, Projection, Size, View};
 
 use crate::flags::CameraFlags;
 
-/// The camera that `flags` describe, for pictures of `size` that look into `region`.
-pub(crate) fn camera(flags: &CameraFlags, region: &Region, size: Size) -> Result<Camera, CameraError> {
-    Camera::new(view(flags, region), projection(flags), region, size)
+/// The camera that `flags` describe, for pictures of `size` that look into a region, and there at what is found of the surface.
+pub(crate) fn camera(flags: &CameraFlags, fitted: &Fitted, size: Size) -> Result<Camera, CameraError> {
+    let Fitted { region, sphere, .. } = fitted;
+    let middle = sphere.map_or(region.center(), |sphere| sphere.center);
+    Camera::looking_at(sphere.as_ref(), view(flags, middle), projection(flags), region, size)
 }
 
-fn view(flags: &CameraFlags, region: &Region) -> View {
+fn view(flags: &CameraFlags, middle: DVec3) -> View {
     let View::Orbit { yaw, pitch, .. } = View::DEFAULT else {
         unreachable!("cameras orbit the region by default");
     };
     match flags.eye {
-        Some(eye) => View::LookAt {
-            eye,
-            target: flags.target.unwrap_or(region.center()),
-            up: flags.up.unwrap_or(DVec3::Z),
-        },
+        Some(eye) => {
+            View::LookAt { eye, target: flags.target.unwrap_or(middle), up: flags.up.unwrap_or(DVec3::Z) }
+        }
         None => View::Orbit {
             yaw: flags.yaw.unwrap_or(yaw),
             pitch: flags.pitch.unwrap_or(pitch),

@@ -53,7 +53,12 @@ pub(crate) fn method(flags: &MethodFlags) -> Result<Method, Failure> {
 
 /// The region that was asked for, else one that fits the surface.
 pub(crate) fn region(given: Option<Region>, surface: &Surface) -> Result<Region, CompileError> {
-    given.map_or_else(|| Ok(fitted(surface)?.region), Ok)
+    Ok(fitted_unless(given, surface)?.region)
+}
+
+/// The region that was given, else one that fits the surface.
+pub(crate) fn fitted_unless(given: Option<Region>, surface: &Surface) -> Result<Fitted, CompileError> {
+    given.map_or_else(|| fitted(surface), |region| Ok(region.into()))
 }
 
 /// A region that fits the surface.

@@ -1,5 +1,7 @@
 //! A region for a surface of which nothing is known but its formula.
 
+mod sphere;
+
 use std::ops::Range;
 
 use glam::{DVec3, IVec3};
@@ -7,6 +9,7 @@ use iso_expr::{BoxKernel, CompileError, Decorated, Decoration};
 
 use crate::batch::BoxBatch;
 use crate::{Region, Surface, Workspace};
+pub use sphere::Sphere;
 
 /// Half the sides of the cubes around the origin in which the surface is looked for, one after the other.
 const HALF_SIDES: [f64; 5] = [2.0, 8.0, 32.0, 128.0, 512.0];
@@ -45,6 +48,8 @@ pub struct Fitted {
     pub region: Region,
     /// Whether the surface certainly has points outside of it.
     pub goes_on: bool,
+    /// A sphere around what is found of the surface in the region, if anything is: what it reaches beyond is thin or small.
+    pub sphere: Option<Sphere>,
 }
 
 /// What may be seen of the surface in a cube.
@@ -64,6 +69,13 @@ impl Glimpse {
     }
 }
 
+/// A region that was chosen, and not drawn around anything.
+impl From<Region> for Fitted {
+    fn from(region: Region) -> Self {
+        Self { region, goes_on: false, sphere: None }
+    }
+}
+
 impl Fitted {
     /// The least region that holds both, of surfaces that may be different ones. If it is larger than one of the two, what goes on outside of
     /// that may lie in it.
@@ -73,7 +85,8 @@ impl Fitted {
             .hull(&other.region)
             .expect("regions that are fitted are no farther than 2²¹ from the origin");
         let is_both = self.region == region && other.region == region;
-        Self { region, goes_on: is_both && self.goes_on && other.goes_on }
+        let sphere = self.sphere.zip(other.sphere).map(|(sphere, other)| sphere.hull(&other));
+        Self { region, goes_on: is_both && self.goes_on && other.goes_on, sphere }
     }
 
     /// A region close around the surface, or around a part of it near the origin.
@@ -119,8 +132,12 @@ impl Fitted {
                 goes_on = has_more();
             }
         }
-        let close = |(_, best): (usize, Glimpse)| best.held.closed_in((kernel, &is_stopped), workspace);
-        Ok(Self { region: best.map_or_else(Region::standard, close), goes_on })
+        let Some((_, Glimpse { held, .. })) = best else {
+            return Ok(Self { region: Region::standard(), goes_on, sphere: None });
+        };
+        let (outer, cells, region) = held.closed_in((kernel, &is_stopped), workspace);
+        let sphere = outer.sphere_around_surface(cells, (kernel, &is_stopped), workspace);
+        Ok(Self { region, goes_on, sphere })
     }
 }
 
@@ -130,21 +147,25 @@ impl Region {
         cube(HALF_SIDES[0])
     }
 
-    /// The box around the surface in this one, as close as cells tell.
+    /// The box around the surface in this one, as close as cells tell, behind the last one that was cut into cells and those of them that may
+    /// hold the surface.
     fn closed_in(
-        mut self,
+        self,
         (kernel, is_stopped): (&dyn BoxKernel, &dyn Fn() -> bool),
         workspace: &mut Workspace,
-    ) -> Self {
+    ) -> (Self, Vec<IVec3>, Self) {
+        let (mut outer, mut inner) = (self, self);
+        let mut cells = Vec::new();
         for _ in 0..ROUNDS {
-            let Some(closer) = self.drawn_in(kernel, workspace).filter(|_| !is_stopped()) else { break };
-            let longest = self.extent().max_element();
-            self = closer;
-            if self.extent().max_element() > WORTHWHILE * longest {
+            outer = inner;
+            cells = outer.open_cells(kernel, workspace);
+            let Some(closer) = outer.around(&cells).filter(|_| !is_stopped()) else { break };
+            inner = closer;
+            if inner.extent().max_element() > WORTHWHILE * outer.extent().max_element() {
                 break;
             }
         }
-        self
+        (outer, cells, inner)
     }
 
     /// F − C over the region.
@@ -169,11 +190,6 @@ impl Region {
         (1..=HALVINGS).fold(vec![IVec3::ZERO], |cells, depth| {
             self.not_empty(halved(&cells), 1 << depth, kernel, workspace)
         })
-    }
-
-    /// The box around the cells of the region that may hold the surface, but not too thin; `None` when none may.
-    fn drawn_in(self, kernel: &dyn BoxKernel, workspace: &mut Workspace) -> Option<Self> {
-        self.around(&self.open_cells(kernel, workspace))
     }
 
     /// The box around some of sixteen cells along each axis, but not too thin; `None` when there are none.

@@ -1,9 +1,9 @@
 //! Cameras: which ray belongs to which pixel.
 //!
-//! z points up. Orbiting cameras look at the middle of the region; yaw 0 and pitch 0 look along +y with x to the right.
+//! z points up. Orbiting cameras look at the middle of a region, or of a sphere in it; yaw 0 and pitch 0 look along +y with x to the right.
 
 use glam::DVec3;
-use iso_grid::{Raster, Ray, Region, Tile};
+use iso_grid::{Raster, Ray, Region, Sphere, Tile};
 use thiserror::Error;
 
 use crate::Size;
@@ -11,13 +11,13 @@ use crate::Size;
 /// Where the camera stands and what it looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum View {
-    /// On a sphere around the middle of the region, looking at it.
+    /// On a sphere around the middle of what is to be seen, looking at it.
     Orbit {
         /// Degrees around the z axis, counter-clockwise seen from above; 0 stands on the −y side.
         yaw: f64,
         /// Degrees above the xy plane; 90 looks straight down.
         pitch: f64,
-        /// Distance from the middle, in world units; by default as far as the picture needs to show the whole region.
+        /// Distance from the middle, in world units; by default as far as the picture needs to show all of it.
         distance: Option<f64>,
     },
     /// Anywhere, looking anywhere.
@@ -41,7 +41,7 @@ pub enum Projection {
     },
     /// Parallel rays.
     Orthographic {
-        /// The width of the picture in world units; by default as wide as the whole region needs.
+        /// The width of the picture in world units; by default as wide as what is to be seen needs.
         view_width: Option<f64>,
     },
 }
@@ -87,16 +87,31 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A camera for pictures of `size` that look into `region`.
+    /// A camera for pictures of `size` that show all of `region`.
     ///
     /// # Errors
     /// When a number is out of range or the directions are degenerate.
     pub fn new(view: View, projection: Projection, region: &Region, size: Size) -> Result<Self, CameraError> {
+        Self::looking_at(None, view, projection, region, size)
+    }
+
+    /// A camera for pictures of `size` that look into `region` and show all of a sphere in it, if there is one, or else all of the region.
+    ///
+    /// # Errors
+    /// When a number is out of range or the directions are degenerate.
+    pub fn looking_at(
+        sphere: Option<&Sphere>,
+        view: View,
+        projection: Projection,
+        region: &Region,
+        size: Size,
+    ) -> Result<Self, CameraError> {
         let (width, height) = (f64::from(size.width()), f64::from(size.height()));
         if let Projection::Perspective { fov } = projection {
             checked("the field of view", "between 0 and 180 degrees", fov, 0.0 < fov && fov < 180.0)?;
         }
-        let frame = Frame { region, projection, aspect: width / height };
+        let center = sphere.map_or(region.center(), |sphere| sphere.center);
+        let frame = Frame { region, sphere, center, projection, aspect: width / height };
         let (eye, forward, up) = place(view, &frame)?;
         let right = forward.cross(up).normalize();
         let down = forward.cross(right);
@@ -167,9 +182,12 @@ fn half_height(fov: f64) -> f64 {
     core_math::tan(0.5 * fov.to_radians())
 }
 
-/// What it takes to show a whole region.
+/// What it takes to show a sphere in a region, or all of the region.
 struct Frame<'a> {
     region: &'a Region,
+    sphere: Option<&'a Sphere>,
+    /// The middle of what is shown.
+    center: DVec3,
     projection: Projection,
     /// Width by height of the picture.
     aspect: f64,
@@ -178,19 +196,28 @@ struct Frame<'a> {
 /// The part of the picture, in each direction from its middle, that the region may fill.
 const FILLED: f64 = 0.96;
 
+/// The part that the sphere may fill: there is something in most directions, and a region has but eight corners.
+const FILLED_BY_SPHERE: f64 = 0.88;
+
 impl Frame<'_> {
-    /// The corners of the region, seen from its middle.
+    /// The corners of the region, seen from the middle of what is shown.
     fn corners(&self) -> impl Iterator<Item = DVec3> {
-        let half = 0.5 * self.region.extent();
+        let (half, off) = (0.5 * self.region.extent(), self.region.center() - self.center);
         (0..8).map(move |corner| {
-            half * DVec3::from_array([1, 2, 4].map(|bit| if corner & bit == 0 { -1.0 } else { 1.0 }))
+            off + half * DVec3::from_array([1, 2, 4].map(|bit| if corner & bit == 0 { -1.0 } else { 1.0 }))
         })
     }
 
-    /// How far from the middle an eye must stand that looks along `forward`, so that every corner is in the picture.
+    /// How far from the middle an eye must stand that looks along `forward`, so that the sphere is in the picture, or every corner.
     fn distance(&self, forward: DVec3, up: DVec3) -> f64 {
         let Projection::Perspective { fov } = self.projection else {
-            return self.region.extent().length();
+            // In front of the region.
+            return self.region.extent().length() + self.region.center().distance(self.center);
+        };
+        let distance_of_sphere = |sphere: &Sphere| {
+            // Rays that touch it are off the middle by the angle with this tangent.
+            let tangent = FILLED_BY_SPHERE * half_height(fov) * self.aspect.min(1.0);
+            sphere.radius * (1.0 + tangent * tangent).sqrt() / tangent
         };
         let right = forward.cross(up).normalize();
         let up = right.cross(forward);
@@ -199,15 +226,18 @@ impl Frame<'_> {
             let across = (corner.dot(right).abs() / self.aspect).max(corner.dot(up).abs());
             across / reach - corner.dot(forward)
         });
-        distances.fold(0.0, f64::max)
+        let distance = distances.fold(0.0, f64::max);
+        self.sphere.map_or(distance, |sphere| distance.min(distance_of_sphere(sphere)))
     }
 
-    /// The width of a picture of parallel rays that shows every corner.
+    /// The width of a picture of parallel rays that shows the sphere, or every corner.
     fn view_width(&self, right: DVec3, down: DVec3) -> f64 {
+        let width_of_sphere = |sphere: &Sphere| 2.0 * sphere.radius * self.aspect.max(1.0) / FILLED_BY_SPHERE;
         let widths = self
             .corners()
             .map(|corner| corner.dot(right).abs().max(corner.dot(down).abs() * self.aspect) * 2.0 / FILLED);
-        widths.fold(0.0, f64::max)
+        let width = widths.fold(0.0, f64::max);
+        self.sphere.map_or(width, |sphere| width.min(width_of_sphere(sphere)))
     }
 }
 
@@ -225,7 +255,7 @@ fn place(view: View, frame: &Frame<'_>) -> Result<(DVec3, DVec3, DVec3), CameraE
             let up = DVec3::new(-sin_pitch * sin_yaw, sin_pitch * cos_yaw, cos_pitch);
             let distance = distance.unwrap_or_else(|| frame.distance(-outward, up));
             checked("the distance", "positive", distance, distance > 0.0 && distance.is_finite())?;
-            Ok((frame.region.center() + distance * outward, -outward, up))
+            Ok((frame.center + distance * outward, -outward, up))
         }
         View::LookAt { eye, target, up } => {
             let all = eye + target + up;
@@ -299,6 +329,47 @@ mod tests {
                 assert!((farthest - FILLED).abs() < 1e-9, "{width}x{height} {projection:?}: {farthest}");
             }
         }
+    }
+
+    /// Its outline is inside the picture, and comes close to its edge.
+    #[test]
+    fn all_of_a_sphere_is_in_the_picture() {
+        let sphere = Sphere { center: DVec3::new(0.5, -0.2, 0.1), radius: 0.3 };
+        for (width, height) in [(100, 100), (300, 100), (100, 300)] {
+            for projection in [Projection::DEFAULT, Projection::Orthographic { view_width: None }] {
+                let size = Size::new(width, height).unwrap();
+                let camera =
+                    Camera::looking_at(Some(&sphere), View::DEFAULT, projection, &region(), size).unwrap();
+                let mut farthest: f64 = 0.0;
+                for step in 0..360 {
+                    let angle = f64::from(step).to_radians();
+                    // Seen from the eye, the outline is a little nearer than the middle.
+                    for tilt in 0..90 {
+                        let tilt = f64::from(tilt).to_radians();
+                        let across = angle.cos() * camera.right() + angle.sin() * camera.up();
+                        let outward = tilt.cos() * across - tilt.sin() * camera.forward();
+                        let [column, row] = project(&camera, sphere.center + sphere.radius * outward);
+                        let [column, row] = [
+                            (column - camera.middle[0]) / camera.middle[0],
+                            (row - camera.middle[1]) / camera.middle[1],
+                        ];
+                        farthest = farthest.max(column.abs()).max(row.abs());
+                    }
+                }
+                let off = (farthest - FILLED_BY_SPHERE).abs();
+                assert!(off < 1e-4, "{width}x{height} {projection:?}: {farthest}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_region_that_is_smaller_than_the_sphere_is_shown_instead() {
+        let (region, size) = (region(), Size::new(100, 80).unwrap());
+        let sphere = Sphere { center: region.center(), radius: region.extent().length() };
+        let [whole, looking] = [None, Some(&sphere)].map(|sphere| {
+            Camera::looking_at(sphere, View::DEFAULT, Projection::DEFAULT, &region, size).unwrap().raster
+        });
+        assert_eq!(whole, looking);
     }
 
     /// Where a point appears in the picture, in pixels from its upper left corner.

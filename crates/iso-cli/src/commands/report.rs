@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use iso_expr::{Interpreter, Program};
-use iso_grid::{Region, RootFinder, Surface};
+use iso_grid::{Fitted, RootFinder, Surface};
 use iso_render::Stopwatch;
 
 use crate::camera::{camera, projection};
@@ -18,7 +18,7 @@ use crate::failure::Failure;
 use crate::flags::{AxesFlags, EngineName, ReportFlags, SuiteName};
 use crate::formula::{Source, minus_level};
 use crate::measurement::Subject;
-use crate::method::region;
+use crate::method::fitted_unless;
 use crate::output::{OutputFile, to_standard_output};
 use crate::progress::Progress;
 use crate::report::{Axes, Case, Report, Sweep, plots, scenes, write_page, write_table};
@@ -65,12 +65,14 @@ pub(crate) fn run(flags: ReportFlags) -> Result<(), Failure> {
 
 /// The surfaces that are asked for: one formula, or those of a suite.
 fn cases(flags: &ReportFlags) -> Result<Vec<Case>, Failure> {
-    let case = |name, formula, note, program, region| {
-        Ok(Case { name, formula, note, subject: subject(flags, program, region)? })
+    let case = |name, formula, note, program, fitted| {
+        Ok(Case { name, formula, note, subject: subject(flags, program, fitted)? })
     };
     let suite = |suite: SuiteName| -> Result<Vec<Case>, Failure> {
         let scenes = scenes(suite).into_iter();
-        scenes.map(|scene| case(scene.name, scene.formula, scene.note, scene.program, scene.region)).collect()
+        scenes
+            .map(|scene| case(scene.name, scene.formula, scene.note, scene.program, scene.region.into()))
+            .collect()
     };
     match (&flags.subject.formula, flags.subject.suite) {
         (Some(formula), _) => {
@@ -78,9 +80,9 @@ fn cases(flags: &ReportFlags) -> Result<Vec<Case>, Failure> {
             let formula = source.lower(&source.parse()?, &flags.subject.settings)?;
             let program = minus_level(&formula, flags.level.level)?.simplified();
             let surface = Surface::new(Arc::new(Interpreter), program.clone());
-            let region = region(flags.region.region, &surface)?;
+            let fitted = fitted_unless(flags.region.region, &surface)?;
             let text = source.text().trim().to_owned();
-            Ok(vec![case("formula".to_owned(), text, String::new(), program, region)?])
+            Ok(vec![case("formula".to_owned(), text, String::new(), program, fitted)?])
         }
         (None, Some(name)) => suite(name),
         (None, None) => {
@@ -89,13 +91,13 @@ fn cases(flags: &ReportFlags) -> Result<Vec<Case>, Failure> {
     }
 }
 
-fn subject(flags: &ReportFlags, program: Program, region: Region) -> Result<Subject, Failure> {
+fn subject(flags: &ReportFlags, program: Program, fitted: Fitted) -> Result<Subject, Failure> {
     Ok(Subject {
-        camera: camera(&flags.camera, &region, flags.sweep.size)?,
+        camera: camera(&flags.camera, &fitted, flags.sweep.size)?,
         size: flags.sweep.size,
         projection: projection(&flags.camera),
         program,
-        region,
+        region: fitted.region,
     })
 }
 

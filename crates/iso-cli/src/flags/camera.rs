@@ -21,7 +21,7 @@ pub(crate) struct CameraFlags {
     #[arg(long, value_name = "DEGREES", value_parser = values::finite, conflicts_with = "ortho")]
     pub(crate) fov: Option<f64>,
 
-    /// The distance from the middle of the box
+    /// The distance from the middle of what is seen
     #[arg(long, value_name = "LENGTH", value_parser = values::positive, conflicts_with = "eye")]
     pub(crate) distance: Option<f64>,
 

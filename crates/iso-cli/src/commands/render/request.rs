@@ -135,7 +135,7 @@ impl Request {
     /// The region that was asked for, else the least that fits every surface, so that the camera stands still where it may.
     fn region(&mut self) -> Result<Fitted, Failure> {
         if let Some(region) = self.region {
-            return Ok(Fitted { region, goes_on: false });
+            return Ok(region.into());
         }
         let mut hull: Option<Fitted> = None;
         let mut before: Option<Arc<Subject>> = None;
@@ -164,7 +164,7 @@ impl Request {
         let Shot { subject, camera: flags, files, frame, mut phases } = shot;
         let Subject { surface, operations_before, plan } = &*subject;
         let region = fitted.region;
-        let camera = camera(&flags, &region, self.drawn)?;
+        let camera = camera(&flags, &fitted, self.drawn)?;
         let mut counters = Counters::default();
         let followed = plan.followed(surface);
         let known = prepared.take().filter(|known| Arc::ptr_eq(&known.subject, &subject));
