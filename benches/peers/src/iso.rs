@@ -92,9 +92,10 @@ impl Iso {
             Method::Grid => iso_grid::Method::Grid(GridSettings::default()),
         };
         let tracer = method.prepare(&surface, region)?;
-        for kernel in Kernel::ALL.into_iter().filter(|kernel| kernel.pays(program)) {
+        let followed = if method.roots().is_none() { surface.by_signs() } else { &surface };
+        for kernel in Kernel::ALL.into_iter().filter(|kernel| kernel.pays(followed.program())) {
             // What is too large to be compiled is left as it is.
-            surface.compile(kernel).ok();
+            followed.compile(kernel).ok();
         }
         let camera = view.camera()?;
         let shading = Shading::new(&camera, false);

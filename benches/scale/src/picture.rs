@@ -43,7 +43,7 @@ impl Subject {
         let region = Region::new(DVec3::splat(-radius), DVec3::splat(radius))?;
         let surface = Surface::new(engine, program.clone());
         let tracer = Certified::new(&surface, region)?;
-        surface.gradients()?;
+        surface.by_signs().gradients()?;
         Ok(Self { surface, tracer, region, radius, preparation: start.elapsed().as_secs_f64() })
     }
 

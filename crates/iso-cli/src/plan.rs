@@ -90,7 +90,10 @@ impl PlanReport {
     pub(crate) fn new(plan: &Plan, surface: &Surface, before: usize) -> Self {
         let followed = plan.followed(surface);
         let kernels = plan.kernels().iter().map(|decision| {
-            let operations = decision.taken.then(|| followed.program_of(decision.subject).operations());
+            let operations = decision.taken.then(|| {
+                let surface = plan.surface_of(decision.subject, surface);
+                surface.program_of(decision.subject).operations()
+            });
             Line { operations, ..Line::new(decision, Kernel::name) }
         });
         let [after, by_signs] = [surface, followed].map(|surface| surface.program().operations());
@@ -146,9 +149,10 @@ impl PlanReport {
     }
 }
 
-/// How many kernels of the surface that is followed are compiled by now.
-pub(crate) fn kernels_compiled(surface: &Surface) -> usize {
-    Kernel::ALL.into_iter().filter(|kernel| surface.is_compiled(*kernel)).count()
+/// How many kernels that a plan takes of a surface are compiled by now.
+pub(crate) fn kernels_compiled(plan: &Plan, surface: &Surface) -> usize {
+    let is_compiled = |kernel: &Kernel| plan.surface_of(*kernel, surface).is_compiled(*kernel);
+    Kernel::ALL.iter().filter(|kernel| is_compiled(kernel)).count()
 }
 
 fn lines<T: Copy>(decisions: &[Decision<T>], name: fn(T) -> &'static str) -> Vec<Line> {

@@ -48,7 +48,8 @@ pub struct Fitted {
     pub region: Region,
     /// Whether the surface certainly has points outside of it.
     pub goes_on: bool,
-    /// A sphere around what is found of the surface in the region, if anything is: what it reaches beyond is thin or small.
+    /// A sphere around the points at which F − C is found to change its sign in the region, if any are. What the surface reaches beyond is thin or
+    /// small; at poles the sign changes, too.
     pub sphere: Option<Sphere>,
 }
 

@@ -25,7 +25,9 @@ const APPROACH: [i32; 11] = [-40, -37, -34, -31, -28, -25, -22, -19, -16, -13, -
 /// Both slices hold something for each ray of the tile, the normals NaN where they are not known yet: others were found on the way
 /// by [`Tracer::trace_tile`] and stay.
 ///
-/// A `tracer` for the surface may know [shorter formulas](Tracer::gradients_on) around neighbouring rays, which give the same normals.
+/// A `tracer` for the surface may know [shorter formulas](Tracer::gradients_on) around neighbouring rays, which give the same normals. Those that
+/// [`Certified`](crate::Certified) finds on the way are of [`Surface::by_signs`]: another function may give others in the last bits, or none where
+/// it has no gradient.
 ///
 /// At a touch, and where the gradient vanishes or is no finite vector, the normal is a limit: that of the points in front of the hit, on
 /// the side that the ray comes from, the nearest that has one. So a double root such as (x² + y² + z² − 1)² = 0 has the

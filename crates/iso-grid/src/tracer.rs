@@ -61,7 +61,7 @@ pub trait Tracer: Send + Sync {
     }
 
     /// A function with the signs of F − C, and its three derivatives, at points of the box with these corners, where the method knows
-    /// a kernel for it that takes much less time than that of F − C. On the surface its derivatives are those of F − C.
+    /// a kernel for it that takes much less time than that of F − C. On the surface its gradient has the direction of that of F − C.
     fn gradients_on(&self, lo: DVec3, hi: DVec3) -> Option<Arc<dyn BatchKernel>> {
         let _ = (lo, hi);
         None

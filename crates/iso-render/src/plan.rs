@@ -225,14 +225,18 @@ impl Plan {
     /// # Errors
     /// When the engine cannot compile one.
     pub fn compile(&self, surface: &Surface) -> Result<(), CompileError> {
-        let surface = self.followed(surface);
-        self.compiled_ahead().try_for_each(|kernel| surface.compile(kernel))
+        self.compiled_ahead().try_for_each(|kernel| self.surface_of(kernel, surface).compile(kernel))
     }
 
     /// The surface by whose kernels the method follows rays and normals are found: the one that is given, or another one with
     /// [the same signs](Surface::by_signs).
     pub fn followed<'a>(&self, surface: &'a Surface) -> &'a Surface {
         if is_certified(&self.method) { surface.by_signs() } else { surface }
+    }
+
+    /// The surface whose kernel is taken: the one that is [followed](Self::followed), but boxes are fitted by signs whatever the method is.
+    pub fn surface_of<'a>(&self, kernel: Kernel, surface: &'a Surface) -> &'a Surface {
+        if kernel == Kernel::ValueEnclosures { surface.by_signs() } else { self.followed(surface) }
     }
 
     /// Prepares the method for a surface in a region.

@@ -38,7 +38,7 @@ pub(crate) fn run(flags: TraceFlags) -> Result<(), Failure> {
         let region = region(flags.method.region.region, &surface)?;
         let tracer = plan.tracer(&surface, region)?;
         interruption.begin_work();
-        Ok::<_, Failure>(follow(&surface, tracer.as_ref(), &rays)?)
+        Ok::<_, Failure>(follow(plan.followed(&surface), tracer.as_ref(), &rays)?)
     })?;
     let unfinished = followed.iter().filter(|end| end.is_none()).count() as u64;
     let all = rays.len() as u64;

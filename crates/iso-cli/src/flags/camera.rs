@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use crate::values;
 
-/// The camera. By default it stands far enough away to see the whole box.
+/// The camera. By default it stands far enough away to see all that is found of the surface, or a box that is given.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Camera", allow_negative_numbers = true)]
 pub(crate) struct CameraFlags {
@@ -33,11 +33,11 @@ pub(crate) struct CameraFlags {
     #[arg(long, value_name = "LENGTH", value_parser = values::positive, requires = "ortho")]
     pub(crate) view_width: Option<f64>,
 
-    /// Stand here instead of on a sphere around the box
+    /// Stand here instead of on a sphere around what is seen
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     pub(crate) eye: Option<DVec3>,
 
-    /// Look there [default: the middle of the box]
+    /// Look there [default: the middle of what is seen]
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     #[arg(requires = "eye")]
     pub(crate) target: Option<DVec3>,

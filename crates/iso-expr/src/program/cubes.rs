@@ -4,7 +4,8 @@
 //! x²z³ − 9/80·y²z³, is such a sum: all along its waist, where A and z are zero, its gradient vanishes, and near it F is not monotone along any ray.
 //! A − z·∛(x² + 9/80·y²) has the same zeros, and a gradient at all of them but its tips.
 //!
-//! R is made of even powers, so that where it is zero it has no slope: a surface loses its gradient there either way, and no gradient is lost by the root.
+//! R is made of even powers, so that where it is zero it has no slope, if what is raised has one: a surface loses its gradient there either way, and
+//! no gradient is lost by the root.
 
 use super::{Node, NodeId, Program};
 use crate::Operation;
@@ -151,7 +152,9 @@ impl Program {
                 }
                 _ => product.multiply_by(factor, 1),
             }
-            if product.powers.len() + product.constants.len() + ahead.len() > MOST_TERMS {
+            let is_too_high = |(_, exponent): &(NodeId, u32)| *exponent > Operation::LARGEST_POWER;
+            let count = product.powers.len() + product.constants.len() + ahead.len();
+            if count > MOST_TERMS || product.powers.iter().any(is_too_high) {
                 return None;
             }
         }
@@ -284,6 +287,8 @@ mod tests {
             "x^3 - y^2 z^2",
             "x^2 - y^3 z^2",
             "(x^2 + y^2 + z^2 - 1)^3 - x^2 z^3 - 0.1",
+            // A power is too high.
+            "x^1500 z^3 + y^2 z^3 - x^3",
             // Its value is asked for.
             "sqrt(x^3 - y^3 z^2) - 1",
             "max(x^3 - y^3 z^2, z) - 1",

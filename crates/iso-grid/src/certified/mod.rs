@@ -39,8 +39,8 @@ use walk::Walk;
 
 /// The method that proves what it says, by interval arithmetic rounded outwards.
 ///
-/// What is proven is about real arithmetic on the exact doubles of the formula, the ray and the region. F is the formula's function or
-/// [another one with its signs](Surface::by_signs):
+/// What is proven is about real arithmetic on the exact doubles of the formula, the ray and the region. F is the formula's function, or
+/// [another one with its signs](Surface::by_signs) that has simple roots where that may have multiple ones:
 /// - [`Outcome::Hit`]: F is continuous and strictly monotone on the bracket, it has a root there, a simple one, inside
 ///   the region, and no point of the region before it is a root;
 /// - [`Outcome::Touch`]: no point of the region before the bracket is a root, and in the bracket, which cannot be split
@@ -52,7 +52,7 @@ use walk::Walk;
 ///
 /// The region is a grid of cells, proven empty where they are when a ray first comes by; what is found out is kept with the
 /// surface, and spares later rays and later pictures the search through empty space. It depends on the surface alone, so that
-/// the outcome of a ray does not depend on others. Where F is a polynomial and a ray is hard, its Bernstein coefficients along the ray tell the
+/// the outcome of a ray does not depend on others. Where the formula is a polynomial and a ray is hard, its Bernstein coefficients along the ray tell the
 /// search where to look.
 ///
 /// The ray is searched front to back. A stretch of it is discarded when the enclosure of F excludes zero, over the

@@ -69,7 +69,8 @@ impl Region {
             self.push_crossings(&mut points, (&cells, count), kernel, workspace);
             let sphere = Sphere::around(&points)?;
             cells.retain(|cell| self.is_outside(*cell, count, &sphere));
-            if cells.is_empty() || cells.len() > MOST_OUTSIDE || is_stopped() {
+            let is_last = depth == HALVINGS + HALVINGS_OUTSIDE;
+            if is_last || cells.is_empty() || cells.len() > MOST_OUTSIDE || is_stopped() {
                 break;
             }
             cells = self.not_empty(halved(&cells), 2 * count, kernel, workspace);

@@ -166,9 +166,8 @@ impl Request {
         let region = fitted.region;
         let camera = camera(&flags, &fitted, self.drawn)?;
         let mut counters = Counters::default();
-        let followed = plan.followed(surface);
         let known = prepared.take().filter(|known| Arc::ptr_eq(&known.subject, &subject));
-        let kernels_before = if known.is_some() { kernels_compiled(followed) } else { 0 };
+        let kernels_before = if known.is_some() { kernels_compiled(plan, surface) } else { 0 };
         let known = match known {
             Some(known) => known,
             None => {
@@ -217,9 +216,9 @@ impl Request {
             operations: surface.program().operations(),
             gradient_operations: plan
                 .takes_gradient()
-                .then(|| followed.program_of(Kernel::Gradients).operations()),
+                .then(|| plan.followed(surface).program_of(Kernel::Gradients).operations()),
             plan: PlanReport::new(plan, surface, *operations_before)
-                .after(kernels_compiled(followed) - kernels_before),
+                .after(kernels_compiled(plan, surface) - kernels_before),
             pixels,
             counters,
             milliseconds: phases,

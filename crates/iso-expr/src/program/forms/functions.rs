@@ -26,6 +26,37 @@ impl Builder {
         self.bent((middle, size), x, (slope, slope), half)
     }
 
+    /// s = ∛(m + Δ) is c + Δ/(3c²) − q for c = ∛m, where q = (s − c)²·(2c + s)/(3c²) has c's sign and |s − c| ≤ r/(l² + l·|c| + c²) with l = ∛(|m| − r).
+    pub(super) fn cube_root(&mut self, x: Form) -> Form {
+        let root = self.0.apply(Operation::CubeRoot, &[x.middle]);
+        let Some(deviation) = self.deviation(x) else { return self.known(root) };
+        let distance = self.distance(x.middle, deviation);
+        let stays_away = self.is_positive(distance);
+        let distance = self.provided(stays_away, distance);
+        let least = self.0.apply(Operation::CubeRoot, &[distance]);
+        let (size, square) = (self.magnitude_of(root), self.times(root, root));
+        let one = self.0.literal(1.0);
+        let triple = self.scaled(3.0, square);
+        let slope = self.of(Operation::Divide, one, triple);
+        let sum = self.of(Operation::Add, least, size);
+        let product = self.times(least, sum);
+        let sum = self.of(Operation::Add, product, square);
+        let change = self.of(Operation::Divide, deviation, sum);
+        let part = self.times(deviation, slope);
+        let tripled = self.scaled(3.0, size);
+        let most = self.of(Operation::Add, tripled, part);
+        let bend = self.times(most, slope);
+        let bend = self.times(change, bend);
+        let bend = self.times(change, bend);
+        let half = self.scaled(0.5, bend);
+        let sign = self.0.apply(Operation::Sign, &[root]);
+        let shift = self.times(sign, half);
+        let middle = self.of(Operation::Subtract, root, shift);
+        let size = self.of(Operation::Add, size, part);
+        let size = self.larger(size);
+        self.bent((middle, size), x, (slope, slope), half)
+    }
+
     /// √(x² + y²)
     pub(super) fn hypotenuse(&mut self, x: Form, y: Form) -> Form {
         let (x, y) = (self.square(x), self.square(y));

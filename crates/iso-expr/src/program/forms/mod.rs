@@ -97,8 +97,10 @@ impl Program {
                 matches!(
                     operation,
                     O::Add | O::Subtract | O::Multiply | O::Divide | O::Negate | O::IntegerPower
-                ) || matches!(operation, O::SquareRoot | O::Hypotenuse | O::Exp | O::Sin | O::Cos)
-                    || matches!(operation, O::Absolute | O::Minimum | O::Maximum)
+                ) || matches!(
+                    operation,
+                    O::SquareRoot | O::CubeRoot | O::Hypotenuse | O::Exp | O::Sin | O::Cos
+                ) || matches!(operation, O::Absolute | O::Minimum | O::Maximum)
             }
             _ => true,
         })
@@ -150,6 +152,7 @@ impl Builder {
             Operation::Multiply if operands[0] == operands[1] => self.square(a),
             Operation::Multiply => self.product(a, b),
             Operation::SquareRoot => self.square_root(a),
+            Operation::CubeRoot => self.cube_root(a),
             Operation::Hypotenuse => self.hypotenuse(a, b),
             Operation::Exp => self.exponential(a),
             Operation::Sin => self.sine(a),

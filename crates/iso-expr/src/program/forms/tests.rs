@@ -7,7 +7,8 @@ use crate::{Ast, Engine, Interpreter, Interval, Operation, Program, Scratch};
 type Form = [f64; PARTS];
 
 /// What has forms beside arithmetic; those that are continuous come first.
-const OTHERS: [Operation; 10] = [
+const OTHERS: [Operation; 11] = [
+    Operation::CubeRoot,
     Operation::Hypotenuse,
     Operation::Exp,
     Operation::Ln,
@@ -21,7 +22,7 @@ const OTHERS: [Operation; 10] = [
 ];
 
 /// How many of these are continuous.
-const CONTINUOUS: usize = 5;
+const CONTINUOUS: usize = 6;
 
 /// Forms of x, y and z around a point, so wide.
 fn arguments(random: &mut Random, width: f64) -> [Form; 3] {
