@@ -86,7 +86,11 @@ impl Fitted {
             .hull(&other.region)
             .expect("regions that are fitted are no farther than 2²¹ from the origin");
         let is_both = self.region == region && other.region == region;
-        let sphere = self.sphere.zip(other.sphere).map(|(sphere, other)| sphere.hull(&other));
+        // Where nothing is found there is nothing to look at.
+        let sphere = match (self.sphere, other.sphere) {
+            (Some(sphere), Some(other)) => Some(sphere.hull(&other)),
+            (one, other) => one.or(other),
+        };
         Self { region, goes_on: is_both && self.goes_on && other.goes_on, sphere }
     }
 

@@ -179,6 +179,15 @@ mod tests {
         }
     }
 
+    /// A point that grows into a ball, say.
+    #[test]
+    fn where_nothing_is_found_there_is_nothing_to_look_at() {
+        let [point, ball] = ["x^2 + y^2 + z^2 = 0", "x^2 + y^2 + z^2 = 1"].map(around);
+        assert!(point.sphere.is_none() && ball.sphere.is_some());
+        assert_eq!([point.hull(&ball).sphere, ball.hull(&point).sphere], [ball.sphere; 2]);
+        assert_eq!(point.hull(&point).sphere, None);
+    }
+
     #[test]
     fn hulls_hold_both_spheres_and_touch_them() {
         let sphere = |x, radius| Sphere { center: DVec3::new(x, 0.0, 0.0), radius };
