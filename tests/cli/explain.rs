@@ -17,6 +17,10 @@ fn a_function_with_the_same_signs_is_shown_where_rays_are_followed_by_one() {
     let json = explained(heart, &[]);
     assert!(json["signs"]["text"].as_str().unwrap().contains("cbrt"));
     assert_eq!(json["signs"]["size"], json["plan"]["operations"]["by_signs"]);
+    // Boxes are fitted by signs whatever the method is.
+    let kernels = explained(heart, &["--method", "grid"])["plan"]["kernels"].as_array().unwrap().clone();
+    let fits = kernels.iter().find(|kernel| kernel["name"] == "value enclosures").unwrap();
+    assert_eq!(fits["operations"], json["signs"]["size"]);
     for (formula, flags) in [(PAPER, vec![]), (heart, vec!["--method", "grid"])] {
         let json = explained(formula, &flags);
         assert!(json["signs"].is_null() && json["plan"]["operations"]["by_signs"].is_null(), "{formula}");

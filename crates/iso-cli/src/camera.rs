@@ -8,9 +8,7 @@ use crate::flags::CameraFlags;
 
 /// The camera that `flags` describe, for pictures of `size` that look into a region, and there at what is found of the surface.
 pub(crate) fn camera(flags: &CameraFlags, fitted: &Fitted, size: Size) -> Result<Camera, CameraError> {
-    let Fitted { region, sphere, .. } = fitted;
-    let middle = sphere.map_or(region.center(), |sphere| sphere.center);
-    Camera::looking_at(sphere.as_ref(), view(flags, middle), projection(flags), region, size)
+    Camera::looking_at(view(flags, fitted.center()), projection(flags), fitted, size)
 }
 
 fn view(flags: &CameraFlags, middle: DVec3) -> View {

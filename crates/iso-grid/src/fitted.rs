@@ -78,6 +78,11 @@ impl From<Region> for Fitted {
 }
 
 impl Fitted {
+    /// The middle of what is to be seen: that of the sphere, or else of the region.
+    pub fn center(&self) -> DVec3 {
+        self.sphere.map_or(self.region.center(), |sphere| sphere.center)
+    }
+
     /// The least region that holds both, of surfaces that may be different ones. If it is larger than one of the two, what goes on outside of
     /// that may lie in it.
     pub fn hull(&self, other: &Self) -> Self {

@@ -3,7 +3,7 @@
 //! z points up. Orbiting cameras look at the middle of a region, or of a sphere in it; yaw 0 and pitch 0 look along +y with x to the right.
 
 use glam::DVec3;
-use iso_grid::{Raster, Ray, Region, Sphere, Tile};
+use iso_grid::{Fitted, Raster, Ray, Region, Sphere, Tile};
 use thiserror::Error;
 
 use crate::Size;
@@ -92,26 +92,24 @@ impl Camera {
     /// # Errors
     /// When a number is out of range or the directions are degenerate.
     pub fn new(view: View, projection: Projection, region: &Region, size: Size) -> Result<Self, CameraError> {
-        Self::looking_at(None, view, projection, region, size)
+        Self::looking_at(view, projection, &Fitted::from(*region), size)
     }
 
-    /// A camera for pictures of `size` that look into `region` and show all of a sphere in it, if there is one, or else all of the region.
+    /// A camera for pictures of `size` that look into a region and show all of the sphere in it, if there is one, or else all of the region.
     ///
     /// # Errors
     /// When a number is out of range or the directions are degenerate.
     pub fn looking_at(
-        sphere: Option<&Sphere>,
         view: View,
         projection: Projection,
-        region: &Region,
+        fitted: &Fitted,
         size: Size,
     ) -> Result<Self, CameraError> {
         let (width, height) = (f64::from(size.width()), f64::from(size.height()));
         if let Projection::Perspective { fov } = projection {
             checked("the field of view", "between 0 and 180 degrees", fov, 0.0 < fov && fov < 180.0)?;
         }
-        let center = sphere.map_or(region.center(), |sphere| sphere.center);
-        let frame = Frame { region, sphere, center, projection, aspect: width / height };
+        let frame = Frame { fitted, projection, aspect: width / height };
         let (eye, forward, up) = place(view, &frame)?;
         let right = forward.cross(up).normalize();
         let down = forward.cross(right);
@@ -184,10 +182,7 @@ fn half_height(fov: f64) -> f64 {
 
 /// What it takes to show a sphere in a region, or all of the region.
 struct Frame<'a> {
-    region: &'a Region,
-    sphere: Option<&'a Sphere>,
-    /// The middle of what is shown.
-    center: DVec3,
+    fitted: &'a Fitted,
     projection: Projection,
     /// Width by height of the picture.
     aspect: f64,
@@ -202,7 +197,8 @@ const FILLED_BY_SPHERE: f64 = 0.88;
 impl Frame<'_> {
     /// The corners of the region, seen from the middle of what is shown.
     fn corners(&self) -> impl Iterator<Item = DVec3> {
-        let (half, off) = (0.5 * self.region.extent(), self.region.center() - self.center);
+        let Fitted { region, .. } = self.fitted;
+        let (half, off) = (0.5 * region.extent(), region.center() - self.fitted.center());
         (0..8).map(move |corner| {
             off + half * DVec3::from_array([1, 2, 4].map(|bit| if corner & bit == 0 { -1.0 } else { 1.0 }))
         })
@@ -210,11 +206,12 @@ impl Frame<'_> {
 
     /// How far from the middle an eye must stand that looks along `forward`, so that the sphere is in the picture, or every corner.
     fn distance(&self, forward: DVec3, up: DVec3) -> f64 {
+        let Fitted { region, sphere, .. } = self.fitted;
         let Projection::Perspective { fov } = self.projection else {
             // In front of the region.
-            return self.region.extent().length() + self.region.center().distance(self.center);
+            return region.extent().length() + region.center().distance(self.fitted.center());
         };
-        let distance_of_sphere = |sphere: &Sphere| {
+        let distance_of_sphere = |sphere: Sphere| {
             // Rays that touch it are off the middle by the angle with this tangent.
             let tangent = FILLED_BY_SPHERE * half_height(fov) * self.aspect.min(1.0);
             sphere.radius * (1.0 + tangent * tangent).sqrt() / tangent
@@ -227,17 +224,17 @@ impl Frame<'_> {
             across / reach - corner.dot(forward)
         });
         let distance = distances.fold(0.0, f64::max);
-        self.sphere.map_or(distance, |sphere| distance.min(distance_of_sphere(sphere)))
+        sphere.map_or(distance, |sphere| distance.min(distance_of_sphere(sphere)))
     }
 
     /// The width of a picture of parallel rays that shows the sphere, or every corner.
     fn view_width(&self, right: DVec3, down: DVec3) -> f64 {
-        let width_of_sphere = |sphere: &Sphere| 2.0 * sphere.radius * self.aspect.max(1.0) / FILLED_BY_SPHERE;
+        let width_of_sphere = |sphere: Sphere| 2.0 * sphere.radius * self.aspect.max(1.0) / FILLED_BY_SPHERE;
         let widths = self
             .corners()
             .map(|corner| corner.dot(right).abs().max(corner.dot(down).abs() * self.aspect) * 2.0 / FILLED);
         let width = widths.fold(0.0, f64::max);
-        self.sphere.map_or(width, |sphere| width.min(width_of_sphere(sphere)))
+        self.fitted.sphere.map_or(width, |sphere| width.min(width_of_sphere(sphere)))
     }
 }
 
@@ -255,7 +252,7 @@ fn place(view: View, frame: &Frame<'_>) -> Result<(DVec3, DVec3, DVec3), CameraE
             let up = DVec3::new(-sin_pitch * sin_yaw, sin_pitch * cos_yaw, cos_pitch);
             let distance = distance.unwrap_or_else(|| frame.distance(-outward, up));
             checked("the distance", "positive", distance, distance > 0.0 && distance.is_finite())?;
-            Ok((frame.center + distance * outward, -outward, up))
+            Ok((frame.fitted.center() + distance * outward, -outward, up))
         }
         View::LookAt { eye, target, up } => {
             let all = eye + target + up;
@@ -335,11 +332,11 @@ mod tests {
     #[test]
     fn all_of_a_sphere_is_in_the_picture() {
         let sphere = Sphere { center: DVec3::new(0.5, -0.2, 0.1), radius: 0.3 };
+        let fitted = Fitted { sphere: Some(sphere), ..region().into() };
         for (width, height) in [(100, 100), (300, 100), (100, 300)] {
             for projection in [Projection::DEFAULT, Projection::Orthographic { view_width: None }] {
                 let size = Size::new(width, height).unwrap();
-                let camera =
-                    Camera::looking_at(Some(&sphere), View::DEFAULT, projection, &region(), size).unwrap();
+                let camera = Camera::looking_at(View::DEFAULT, projection, &fitted, size).unwrap();
                 let mut farthest: f64 = 0.0;
                 for step in 0..360 {
                     let angle = f64::from(step).to_radians();
@@ -366,8 +363,9 @@ mod tests {
     fn a_region_that_is_smaller_than_the_sphere_is_shown_instead() {
         let (region, size) = (region(), Size::new(100, 80).unwrap());
         let sphere = Sphere { center: region.center(), radius: region.extent().length() };
-        let [whole, looking] = [None, Some(&sphere)].map(|sphere| {
-            Camera::looking_at(sphere, View::DEFAULT, Projection::DEFAULT, &region, size).unwrap().raster
+        let [whole, looking] = [None, Some(sphere)].map(|sphere| {
+            let fitted = Fitted { sphere, ..region.into() };
+            Camera::looking_at(View::DEFAULT, Projection::DEFAULT, &fitted, size).unwrap().raster
         });
         assert_eq!(whole, looking);
     }

@@ -58,17 +58,21 @@ impl Program {
     /// differences of cubes told by their roots: where F is one, or a minimum or maximum of such. Where the
     /// two are zero their gradients have the same direction, if both have any.
     pub fn without_cubes(&self) -> Self {
-        let mut are_signs = self.asked_for_signs().into_iter();
-        let mut is_changed = false;
+        let are_signs = self.asked_for_signs();
+        // Nothing is built of the many programs that have none.
+        let has_cubes = |((id, _), is_sign): ((NodeId, &Node), &bool)| *is_sign && self.cubes(id).is_some();
+        if !self.iter().zip(&are_signs).any(has_cubes) {
+            return self.clone();
+        }
+        let mut are_signs = are_signs.into_iter();
         let mut program = Self::new();
         program.outputs = program.import_with(self, |program, node| {
             let id = program.intern(node);
             let is_sign = are_signs.next().expect("there is one for each node");
-            let root = is_sign.then(|| program.difference_of_roots(id)).flatten();
-            is_changed |= root.is_some();
-            root.unwrap_or(id)
+            let cubes = is_sign.then(|| program.cubes(id)).flatten();
+            cubes.map_or(id, |cubes| program.sum_of_roots(cubes))
         });
-        if is_changed { program.simplified() } else { self.clone() }
+        program.simplified()
     }
 
     /// For each node whether nothing but its sign is asked for.
@@ -88,8 +92,8 @@ impl Program {
         signs.into_iter().zip(values).map(|(sign, value)| sign && !value).collect()
     }
 
-    /// A + B·∛R where a sum is A³ + B³·R.
-    fn difference_of_roots(&mut self, sum: NodeId) -> Option<NodeId> {
+    /// Two sums and cubes of products whose products a sum is the sum of: c and A, R and B where it is c·A³ + R·B³.
+    fn cubes(&self, sum: NodeId) -> Option<[(Vec<Product>, Product); 2]> {
         let terms = self.terms(sum)?;
         (0..terms.len()).find_map(|place| {
             let mut others = terms.clone();
@@ -102,10 +106,14 @@ impl Program {
                 return None;
             }
             let coefficient = Product { powers: Vec::new(), ..cube };
-            let a = self.root_of_sum(&[coefficient], &root);
-            let b = self.root_of_sum(&rest, &common);
-            Some(self.apply(Operation::Add, &[a, b]))
+            Some([(vec![coefficient], root), (rest, common)])
         })
+    }
+
+    /// ∛c·A + ∛R·B
+    fn sum_of_roots(&mut self, cubes: [(Vec<Product>, Product); 2]) -> NodeId {
+        let roots = cubes.map(|(sum, root)| self.root_of_sum(&sum, &root));
+        self.apply(Operation::Add, &roots)
     }
 
     /// The terms of a sum, if those are several and not too many.
@@ -124,7 +132,7 @@ impl Program {
                     terms.push(Product { is_negative: product.is_negative != is_negative, ..product });
                 }
             }
-            if terms.len() > MOST_TERMS {
+            if terms.len() + ahead.len() > MOST_TERMS {
                 return None;
             }
         }
@@ -214,7 +222,7 @@ impl Program {
 mod tests {
     use super::*;
     use crate::random::Random;
-    use crate::{Ast, Decorated, Interval};
+    use crate::{Ast, Interval};
 
     const HEART: &str = "(x^2 + 9/4 y^2 + z^2 - 1)^3 - x^2 z^3 - 9/80 y^2 z^3";
 
@@ -228,17 +236,7 @@ mod tests {
     }
 
     fn enclosed_at(program: &Program, point: [f64; 3]) -> Interval {
-        let mut values: Vec<Decorated> = Vec::new();
-        for node in program.nodes() {
-            values.push(match *node {
-                Node::Variable(argument) => Decorated::constant(Interval::point(point[argument.index()])),
-                Node::Constant(constant) => Decorated::constant(constant.enclosure()),
-                Node::Apply(operation, operands) => {
-                    operation.extension().of(operands.map(|operand| values[operand.index()]))
-                }
-            });
-        }
-        values[program.outputs()[0].index()].interval
+        program.enclosures(point.map(Interval::point))[program.outputs()[0].index()].interval
     }
 
     #[test]

@@ -111,7 +111,7 @@ impl Program {
     }
 
     /// Encloses each node over a box.
-    fn enclosures(&self, domain: [Interval; 3]) -> Vec<Decorated> {
+    pub(super) fn enclosures(&self, domain: [Interval; 3]) -> Vec<Decorated> {
         let mut enclosures: Vec<Decorated> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
             enclosures.push(match *node {

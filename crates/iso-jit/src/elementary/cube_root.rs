@@ -1,14 +1,10 @@
 //! The cube root.
 
 use super::double::Double;
-use super::{Approximation, ENTRIES, Table};
+use super::{Approximation, DOUBLINGS, ENTRIES, Table, difference, nearest_multiple};
 
-/// Where the bits of a double count its doublings, and what they count for 1.
-const DOUBLINGS: u32 = 52;
+/// How often 1 is doubled, as its bits count it.
 const DOUBLINGS_OF_ONE: u64 = 1.0f64.to_bits() >> DOUBLINGS;
-
-/// Adding it pushes the fraction out of the significand, and leaves an integer in the lowest bits.
-const SHIFT: f64 = 6_755_399_441_055_744.0;
 
 /// 2^(s/3) and 2^(−2s/3)/3 for s = 0, 1, 2.
 pub(super) static ROOTS: Table<2> = roots();
@@ -16,22 +12,20 @@ pub(super) static ROOTS: Table<2> = roots();
 /// The inverse cube root of m from 1 to 2 is this polynomial up to 2⁻¹⁴·⁶ of it.
 const INVERSE: [f64; 5] = [1.670_007, -1.172_880_6, 0.695_482_94, -0.221_237_97, 0.028_591_047];
 
-/// How often a magnitude is doubled, as 3q + s with s = 0, 1 or 2: q and s, each as a double in whose lowest bits it stands.
+/// How often a magnitude is doubled, as 3q + s with s = 0, 1 or 2: q and s, each in the lowest bits of a word.
 #[inline(always)]
-fn thirds(x: f64) -> [f64; 2] {
-    /// Bits of this double and of a small integer are those of their sum.
-    const INTEGERS: f64 = (1u64 << DOUBLINGS) as f64;
-    let doublings = x.abs().to_bits() >> DOUBLINGS;
-    let count = f64::from_bits(INTEGERS.to_bits() | doublings) - (INTEGERS + DOUBLINGS_OF_ONE as f64);
+fn thirds(x: f64) -> [u64; 2] {
+    let count = difference(x.abs().to_bits() >> DOUBLINGS, DOUBLINGS_OF_ONE);
     // (count − 1)/3 is no more than a third away from q.
-    let q = (count - 1.0).mul_add(1.0 / 3.0, SHIFT);
-    [q, (q - SHIFT).mul_add(-3.0, count + SHIFT)]
+    let (q, q_bits) = nearest_multiple(count - 1.0, 1.0 / 3.0);
+    let (_, s_bits) = nearest_multiple(q.mul_add(-3.0, count), 1.0);
+    [q_bits, s_bits]
 }
 
 /// The entry of an argument in the lowest bits of a word.
 #[inline(always)]
 pub(super) fn index(x: f64) -> u64 {
-    thirds(x)[1].to_bits()
+    thirds(x)[1]
 }
 
 /// The cube root of x = ±2³ᵠ·a with a = 2ˢ·m and m from 1 to 2, from the entry of s. A double y next to the root of a is 2^(s/3)·m·r², r being
@@ -48,7 +42,7 @@ pub(super) fn cbrt(x: f64, [root, third_of_inverse_square]: [f64; 2]) -> Approxi
     const FRACTION: u64 = (1 << DOUBLINGS) - 1;
     let [q, s] = thirds(x);
     let m = f64::from_bits(x.to_bits() & FRACTION | 1.0f64.to_bits());
-    let a = f64::from_bits(m.to_bits().wrapping_add(s.to_bits() << DOUBLINGS));
+    let a = f64::from_bits(m.to_bits().wrapping_add(s << DOUBLINGS));
 
     let [c0, c1, c2, c3, c4] = INVERSE;
     let r = m.mul_add(m.mul_add(m.mul_add(m.mul_add(c4, c3), c2), c1), c0);
@@ -63,7 +57,7 @@ pub(super) fn cbrt(x: f64, [root, third_of_inverse_square]: [f64; 2]) -> Approxi
     let rest = (a - cube.hi) - of_y.lo.mul_add(y, cube.lo);
     let step = rest * (square * third_of_inverse_square);
 
-    let scale = f64::from_bits(q.to_bits().wrapping_add(DOUBLINGS_OF_ONE) << DOUBLINGS).copysign(x);
+    let scale = f64::from_bits(q.wrapping_add(DOUBLINGS_OF_ONE) << DOUBLINGS).copysign(x);
     let hi = y * scale;
     let is_covered = (f64::MIN_POSITIVE..f64::INFINITY).contains(&x.abs());
     let error = if is_covered { hi.abs() * 2f64.powi(-72) } else { f64::INFINITY };

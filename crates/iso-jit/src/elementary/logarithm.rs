@@ -1,16 +1,13 @@
 //! The natural logarithm.
 
 use super::double::Double;
-use super::{Approximation, ENTRIES, Table};
+use super::{Approximation, DOUBLINGS, ENTRIES, Table, difference};
 
 /// ln 2 in two parts. The first is a multiple of 2⁻⁴², so that up to 2¹⁰ times it is exact.
 const LN_2: [f64; 2] = [0.693_147_180_559_890_3, 5.497_923_018_708_371e-14];
 
 /// Arguments are brought to between this and twice as much. The bits of 1 are in the middle of an entry.
 const LEAST: f64 = 0.703_125;
-
-/// Where the bits of a double count its doublings.
-const DOUBLINGS: u32 = 52;
 
 /// Where they count sixteenths of what is between two powers of two.
 const SIXTEENTHS: u32 = 48;
@@ -48,10 +45,8 @@ pub(super) fn index(x: f64) -> u64 {
 /// Together 2⁻⁶¹·⁰; the greatest that was seen, in 330,000 values beside ones of 300 bits, is 2⁻⁶²·⁵.
 #[inline(always)]
 pub(super) fn ln(x: f64, [inverse, logarithm, logarithm_lo]: [f64; 3]) -> Approximation {
-    /// Bits of this double and of a small integer are those of their sum.
-    const INTEGERS: f64 = (1u64 << DOUBLINGS) as f64;
     let doublings = above_least(x) >> DOUBLINGS;
-    let k = f64::from_bits(INTEGERS.to_bits() | doublings) - (INTEGERS + DOUBLINGS_OF_LEAST as f64);
+    let k = difference(doublings, DOUBLINGS_OF_LEAST);
     let doubled = doublings.wrapping_sub(DOUBLINGS_OF_LEAST) << DOUBLINGS;
     let product = Double::product(f64::from_bits(x.to_bits().wrapping_sub(doubled)), inverse);
     let r = product.hi - 1.0;

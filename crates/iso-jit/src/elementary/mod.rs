@@ -118,6 +118,17 @@ fn scalar(operation: Operation) -> extern "C" fn(f64) -> f64 {
     }
 }
 
+/// Where the bits of a double count its doublings.
+const DOUBLINGS: u32 = 52;
+
+/// a − b, for integers of less than 51 bits.
+#[inline(always)]
+fn difference(a: u64, b: u64) -> f64 {
+    /// Bits of this double and of a small integer are those of their sum.
+    const INTEGERS: f64 = (1u64 << DOUBLINGS) as f64;
+    f64::from_bits(INTEGERS.to_bits() | a) - (INTEGERS + b as f64)
+}
+
 /// The integer nearest to a·b, of less than 51 bits, and the same integer in the lowest bits of a word.
 #[inline(always)]
 fn nearest_multiple(a: f64, b: f64) -> (f64, u64) {
