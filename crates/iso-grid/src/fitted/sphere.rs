@@ -168,8 +168,9 @@ mod tests {
     fn what_is_thin_or_small_outside_is_looked_at_too() {
         let star = "sqrt(abs(x)) + sqrt(abs(y)) + sqrt(abs(z)) = 1";
         assert_around(star, &[[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]], 1.0);
-        let apart = "min(x^2 + y^2 + z^2 - 1, (x - 3)^2 + y^2 + z^2 - 0.001)";
-        assert_around(apart, &[[-1.0, 0.0, 0.0], [3.0, 0.0, 0.0]], 2.05);
+        // No corner of the first cells lies in the small ball.
+        let apart = "min(x^2 + y^2 + z^2 - 1, (x - 3)^2 + (y - 0.37)^2 + (z - 0.21)^2 - 0.001)";
+        assert_around(apart, &[[-1.0, 0.0, 0.0], [3.0, 0.37, 0.21]], 2.05);
     }
 
     #[test]
