@@ -78,10 +78,10 @@ impl Region {
         Sphere::around(&points)
     }
 
-    /// Whether a cell lies outside of a sphere, or most of it.
+    /// Whether all of a cell lies outside of a sphere.
     fn is_outside(&self, cell: IVec3, count: i32, sphere: &Sphere) -> bool {
         let (lo, hi) = self.cell(cell, count);
-        lo.midpoint(hi).distance(sphere.center) > sphere.radius
+        sphere.center.clamp(lo, hi).distance(sphere.center) > sphere.radius
     }
 
     /// Adds about where F is zero on edges of cells, of which `count` fill the region along each axis, along which it changes its sign.
@@ -169,8 +169,8 @@ mod tests {
         let star = "sqrt(abs(x)) + sqrt(abs(y)) + sqrt(abs(z)) = 1";
         assert_around(star, &[[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]], 1.0);
         // No corner of the first cells lies in the small ball.
-        let apart = "min(x^2 + y^2 + z^2 - 1, (x - 3)^2 + (y - 0.37)^2 + (z - 0.21)^2 - 0.001)";
-        assert_around(apart, &[[-1.0, 0.0, 0.0], [3.0, 0.37, 0.21]], 2.05);
+        let apart = "min(x^2 + y^2 + z^2 - 0.25, (x - 1.5)^2 + (y - 0.37)^2 + (z - 0.21)^2 - 0.001)";
+        assert_around(apart, &[[-0.5, 0.0, 0.0], [1.5, 0.37, 0.21]], 1.08);
     }
 
     #[test]
