@@ -3,6 +3,7 @@
 use std::iter::repeat_with;
 use std::sync::Mutex;
 
+use bytemuck::cast_slice_mut;
 use glam::{DVec3, Vec3};
 use iso_grid::Outcome;
 
@@ -51,8 +52,8 @@ impl<'a> Band<'a> {
         if !self.is_clear {
             self.is_clear = true;
             self.depth.fill(f64::NAN);
-            self.normals.fill(Vec3::NAN);
-            self.points.fill(DVec3::NAN);
+            cast_slice_mut::<Vec3, f32>(self.normals).fill(f32::NAN);
+            cast_slice_mut::<DVec3, f64>(self.points).fill(f64::NAN);
             self.statuses.fill(Status::Miss);
             self.outcomes.fill(Outcome::Miss);
         }

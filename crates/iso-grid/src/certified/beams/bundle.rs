@@ -5,7 +5,7 @@ use iso_expr::{BatchKernel, Scratch};
 use pulp::{Simd, WithSimd};
 
 use super::form::{Model, ROUNDING};
-use super::pixels::{End, STEPS};
+use super::pixels::STEPS;
 use crate::batch::PointBatch;
 use crate::lanes::{Lanes, ROW, Row, parts};
 use crate::normals::put_units;
@@ -126,17 +126,22 @@ impl Bundle {
         }
     }
 
-    /// How each ray ended that may have a root.
-    pub(super) fn ends(&self) -> impl Iterator<Item = (usize, End)> {
-        (0..ROW).filter_map(|lane| {
-            let wanted = Span { start: self.wanted[0][lane], end: self.wanted[1][lane] };
-            let end = match self.state[lane] {
-                state::FREE => return None,
-                state::HIT => End::Hit(Hit { t: self.t[lane], bracket: wanted }),
-                _ => End::Lost(wanted),
-            };
-            Some((self.places[lane] as usize, end))
-        })
+    /// The rays that have a root, and what encloses it.
+    pub(super) fn hits(&self) -> impl Iterator<Item = (usize, Hit)> {
+        self.in_state(|state| state == state::HIT)
+            .map(|(lane, bracket)| (self.places[lane] as usize, Hit { t: self.t[lane], bracket }))
+    }
+
+    /// The rays that may have a root, which is to be looked for otherwise, and where.
+    pub(super) fn lost(&self) -> impl Iterator<Item = (usize, Span)> {
+        self.in_state(|state| state == state::LOST || state == state::OPEN)
+            .map(|(lane, wanted)| (self.places[lane] as usize, wanted))
+    }
+
+    /// The lanes of the rays in some state, and where their roots are wanted.
+    fn in_state(&self, is_meant: impl Fn(f64) -> bool) -> impl Iterator<Item = (usize, Span)> {
+        let wanted = |lane: usize| Span { start: self.wanted[0][lane], end: self.wanted[1][lane] };
+        (0..ROW).filter(move |lane| is_meant(self.state[*lane])).map(move |lane| (lane, wanted(lane)))
     }
 
     /// Begins with the rays that may have roots between these two by a model; says whether there are any.
@@ -443,12 +448,9 @@ mod tests {
         // Rays of five rows meet the sphere, and those of two others are looked at.
         assert!((2 * 56..3 * 56).contains(&taken.slopes), "{taken:?}");
         assert!((40..2 * 40).contains(&taken.last), "{taken:?}");
-        let hit = |end| match end {
-            End::Hit(hit) => Ok(hit),
-            End::Lost(stretch) => Err(stretch),
-        };
-        let ends = bundles.iter().flat_map(Bundle::ends).map(|(place, end)| (place, hit(end))).collect();
-        (ends, normals)
+        let hits = bundles.iter().flat_map(Bundle::hits).map(|(place, hit)| (place, Ok(hit)));
+        let lost = bundles.iter().flat_map(Bundle::lost).map(|(place, stretch)| (place, Err(stretch)));
+        (hits.chain(lost).collect(), normals)
     }
 
     #[test]

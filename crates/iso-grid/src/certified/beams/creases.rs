@@ -6,7 +6,9 @@
 
 use iso_expr::Extreme;
 
-use super::faces::{Face, is_free};
+use super::bend::Course;
+use super::bows::ways;
+use super::faces::{Face, MOST, undecided};
 use super::grazing::{BLOCK, DOUBTFUL};
 use super::pixels::{End, Ended, Pixel, halves_from};
 use super::subdivision::{Part, Subdivision};
@@ -57,9 +59,10 @@ impl Subdivision<'_> {
         let mut lost = Vec::new();
         let mut doubtful = 0;
         for block in area.blocks(BLOCK) {
-            if !self.is_open(block) || is_free(area, block, part, (Extreme::Greatest, faces)) {
+            if !self.is_open(block) {
                 continue;
             }
+            let Some(undecided) = undecided(area, block, part, (Extreme::Greatest, faces)) else { continue };
             let (first_column, first_row) = area.offset(block.column, block.row);
             for (row, b) in block.rows().zip(halves_from(first_row)) {
                 for (column, a) in block.columns().zip(halves_from(first_column)) {
@@ -67,14 +70,16 @@ impl Subdivision<'_> {
                     if !self.memory.open[place] {
                         continue;
                     }
-                    match likely(faces, (a, b), part.stretch) {
-                        Next::Nothing => {}
-                        Next::Search | Next::Meet => lost.push(place),
-                        Next::Pursue(number) => {
-                            let (pixel, _, is_doubtful) =
-                                self.on_face(part, &faces[number], place, part.stretch);
-                            doubtful += usize::from(is_doubtful);
-                            pixels[number].push(pixel);
+                    match likely((faces, undecided), (a, b), part.stretch) {
+                        Likely::Nothing => {}
+                        Likely::Unclear => lost.push(place),
+                        Likely::Face(number, course, way) => {
+                            let face = &faces[number];
+                            let ways = ways(part.stretch, face.bend.t);
+                            doubtful += usize::from(course.is_doubtful(way, ways, &face.bow));
+                            let ray = self.tile.ray(column, row);
+                            let spans = [part.stretch, part.form.reach];
+                            pixels[number].push(face.met_by((place, ray), spans, (&course, way)));
                         }
                     }
                     if doubtful + lost.len() > DOUBTFUL {
@@ -104,7 +109,7 @@ impl Subdivision<'_> {
             }
             Next::Pursue(number) => {
                 let wanted = Span { start: hit.bracket.start, end: part.stretch.end };
-                pixels[number].push(self.on_face(part, &faces[number], place, wanted).0);
+                pixels[number].push(self.on_face(part, &faces[number], place, wanted));
             }
             Next::Search => {
                 // F is positive before the root, which is enclosed so closely that little is left to search around it.
@@ -158,25 +163,32 @@ impl Subdivision<'_> {
     }
 }
 
-/// What a ray is likely to meet that is so many columns and rows off the middle: the face that falls to zero last.
-fn likely(faces: &[Face], (a, b): (f64, f64), stretch: Span) -> Next {
-    let (mut last, mut farthest) = (None, f64::NEG_INFINITY);
+/// What a ray is likely to meet.
+enum Likely {
+    /// It has no root in the part.
+    Nothing,
+    /// The face of this number, which is `Course` in the middle of the part, about so far from there.
+    Face(usize, Course, f64),
+    /// Faces do not tell.
+    Unclear,
+}
+
+/// What a ray is likely to meet that is so many columns and rows off the middle: of those faces that are not known to be negative, the one
+/// that falls to zero last.
+fn likely((faces, undecided): (&[Face], [bool; MOST]), (a, b): (f64, f64), stretch: Span) -> Likely {
+    let (mut last, mut farthest) = (Likely::Unclear, f64::NEG_INFINITY);
     let mut are_negative = true;
-    for (number, face) in faces.iter().enumerate() {
+    for (number, face) in faces.iter().enumerate().filter(|(number, _)| undecided[*number]) {
         let course = face.bend.at(a, b);
         match face.sign(&course, stretch) {
-            Some(sign) if sign > 0.0 => return Next::Nothing,
+            Some(sign) if sign > 0.0 => return Likely::Nothing,
             Some(_) => continue,
             None => are_negative = false,
         }
         let way = course.way_to_root(&face.bow);
         if !face.bow.rises() && way > farthest {
-            (last, farthest) = (Some(number), way);
+            (last, farthest) = (Likely::Face(number, course, way), way);
         }
     }
-    match last {
-        _ if are_negative => Next::Nothing,
-        Some(number) => Next::Pursue(number),
-        None => Next::Search,
-    }
+    if are_negative { Likely::Nothing } else { last }
 }

@@ -11,10 +11,10 @@ use super::form::{Form, Gradient};
 use super::pixels::Pixel;
 use super::subdivision::{Part, Subdivision};
 use crate::area::Area;
-use crate::{Kernel, Span};
+use crate::{Kernel, Ray, Span};
 
 /// More functions are left to smaller parts, where fewer of them matter.
-const MOST: usize = 4;
+pub(super) const MOST: usize = 4;
 
 /// One of the functions of which F is the least or the greatest, where it may have roots.
 pub(super) struct Face {
@@ -32,6 +32,21 @@ impl Face {
     #[inline]
     pub(super) fn sign(&self, course: &Course, stretch: Span) -> Option<f64> {
         course.sign_between(ways(stretch, self.bend.t), &self.bow).map(|sign| sign * self.bow.sign)
+    }
+
+    /// A ray on which the function is `course`, and which is to meet it in what is wanted, about so far from the middle of the part.
+    #[inline]
+    pub(super) fn met_by(
+        &self,
+        ray: (usize, Ray),
+        [wanted, reach]: [Span; 2],
+        (course, way): (&Course, f64),
+    ) -> Pixel {
+        let mut pixel = Pixel::starting(ray, [wanted, reach], course, &self.bow);
+        if way.is_finite() {
+            pixel.t = (pixel.t + way).max(reach.start).min(reach.end);
+        }
+        pixel
     }
 }
 
@@ -129,34 +144,33 @@ impl Subdivision<'_> {
         self.made_of_several(part, kernels)
     }
 
-    /// A ray that is to meet a face in a stretch, about how far from the middle of the part that is, and whether it is doubtful.
-    pub(super) fn on_face(&self, part: &Part, face: &Face, place: usize, wanted: Span) -> (Pixel, f64, bool) {
+    /// A ray that is to meet a face in a stretch.
+    pub(super) fn on_face(&self, part: &Part, face: &Face, place: usize, wanted: Span) -> Pixel {
         let (column, row) = self.position(place);
         let (a, b) = self.beam(part.beam).area.offset(column, row);
         let course = face.bend.at(a, b);
-        let ray = self.tile.ray(column, row);
-        let reach = part.form.reach;
-        let mut pixel = Pixel::starting((place, ray), [wanted, reach], &course, &face.bow);
         let way = course.way_to_root(&face.bow);
-        if way.is_finite() {
-            pixel.t = (pixel.t + way).max(reach.start).min(reach.end);
-        }
-        (pixel, way, course.is_doubtful(way, ways(wanted, face.bend.t), &face.bow))
+        face.met_by((place, self.tile.ray(column, row)), [wanted, part.form.reach], (&course, way))
     }
 }
 
-/// Whether no ray of a block of an area has a root in a part.
-pub(super) fn is_free(area: Area, block: Area, part: &Part, (extreme, faces): (Extreme, &[Face])) -> bool {
+/// Which faces of a part may have either sign on rays of a block of an area; `None` when none of these rays has a root there.
+pub(super) fn undecided(
+    area: Area,
+    block: Area,
+    part: &Part,
+    (extreme, faces): (Extreme, &[Face]),
+) -> Option<[bool; MOST]> {
     let [across, along] = block.radii();
     let (column, row) = area.offset(block.column, block.row);
-    let mut have_other_sign = true;
-    for face in faces {
+    let mut are_undecided = [false; MOST];
+    for (face, is_undecided) in faces.iter().zip(&mut are_undecided) {
         let course = face.bend.around((column + across, row + along), block.radii());
         match face.sign(&course, part.stretch) {
-            Some(sign) if sign == deciding(extreme) => return true,
+            Some(sign) if sign == deciding(extreme) => return None,
             Some(_) => {}
-            None => have_other_sign = false,
+            None => *is_undecided = true,
         }
     }
-    have_other_sign
+    are_undecided.contains(&true).then_some(are_undecided)
 }

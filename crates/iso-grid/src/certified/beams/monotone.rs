@@ -3,13 +3,13 @@
 use super::beam::Beam;
 use super::bundle::{AT_ONCE, Bundle, Last, Pursuit, Sight, Start};
 use super::form::{Form, Model, ROUNDING};
-use super::pixels::{Ended, halves_from};
+use super::pixels::halves_from;
 use super::rounding::Rounding;
 use super::subdivision::{Part, Subdivision};
 use crate::area::Area;
 use crate::certified::clip::Clip;
 use crate::lanes::ROW;
-use crate::{Kernel, Span, Workspace};
+use crate::{Kernel, Outcome, Span, Workspace};
 
 /// How many times narrower than what is wanted an enclosure must be that rounding of F alone makes wide, so that there is room for the rest.
 const ROOM: f64 = 1.1;
@@ -98,8 +98,11 @@ impl Subdivision<'_> {
         let count = self.bundle(part, model, &mut bundles);
         for bundles in bundles[..count].chunks_mut(AT_ONCE) {
             self.pursue_bundles(bundles, (part, model), &sight);
-            for (place, end) in bundles.iter().flat_map(Bundle::ends) {
-                self.settle(Ended { place, end }, part.kernels);
+            for bundle in &*bundles {
+                bundle.hits().for_each(|(place, hit)| self.end(place, Outcome::Hit(hit)));
+                for (place, stretch) in bundle.lost() {
+                    self.search_one(self.position(place), stretch, part.kernels);
+                }
             }
         }
         self.memory.bundles = bundles;

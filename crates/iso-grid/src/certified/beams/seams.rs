@@ -5,7 +5,7 @@
 
 use iso_expr::Extreme;
 
-use super::faces::{Face, is_free};
+use super::faces::{Face, MOST, undecided};
 use super::grazing::{BLOCK, DOUBTFUL};
 use super::pixels::{End, Ended, halves_from};
 use super::subdivision::{Part, Subdivision};
@@ -88,15 +88,17 @@ impl Subdivision<'_> {
         let area = self.beam(part.beam).area;
         let mut doubtful = 0;
         for block in area.blocks(BLOCK) {
-            if !self.is_open(block) || is_free(area, block, part, (Extreme::Least, faces)) {
+            if !self.is_open(block) {
                 continue;
             }
+            let Some(undecided) = undecided(area, block, part, (Extreme::Least, faces)) else { continue };
             let (first_column, first_row) = area.offset(block.column, block.row);
             for (row, b) in block.rows().zip(halves_from(first_row)) {
                 for (column, a) in block.columns().zip(halves_from(first_column)) {
                     let place = row * self.tile.width() + column;
                     if self.memory.open[place]
-                        && let Some((approach, doubts)) = self.approach_at(part, faces, place, (a, b))
+                        && let Some((approach, doubts)) =
+                            self.approach_at(part, (faces, undecided), place, (a, b))
                     {
                         approaches.push(approach);
                         doubtful += doubts;
@@ -110,17 +112,18 @@ impl Subdivision<'_> {
         true
     }
 
-    /// A ray that is so many columns and rows off the middle, and how many faces it may be asked for in vain; `None` if it has no root.
+    /// A ray that is so many columns and rows off the middle, and how many of those faces that may have either sign it may be asked for in
+    /// vain; `None` if it has no root.
     fn approach_at(
         &self,
         part: &Part,
-        faces: &[Face],
+        (faces, undecided): (&[Face], [bool; MOST]),
         place: usize,
         (a, b): (f64, f64),
     ) -> Option<(Approach, usize)> {
         let (mut likely, mut nearest, mut doubts) = (None, f64::INFINITY, 0);
         let mut found = Found::Nothing;
-        for (number, face) in faces.iter().enumerate() {
+        for (number, face) in faces.iter().enumerate().filter(|(number, _)| undecided[*number]) {
             let course = face.bend.at(a, b);
             match face.sign(&course, part.stretch) {
                 Some(sign) if sign < 0.0 => return None,
@@ -157,7 +160,7 @@ impl Subdivision<'_> {
             let wanted = approach.wanted(part.stretch);
             let is_settled = matches!(approach.found, Found::Unclear);
             if !is_settled && face.sign(&face.bend.at(a, b), wanted).is_none_or(|sign| sign < 0.0) {
-                pixels.push(self.on_face(part, face, approach.place, wanted).0);
+                pixels.push(self.on_face(part, face, approach.place, wanted));
             }
         }
         let mut ended = std::mem::take(&mut self.memory.ended);
