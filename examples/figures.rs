@@ -17,8 +17,8 @@ use iso_expr::{Ast, Engine, Interpreter, Program};
 use iso_grid::{GridSettings, Method, Region, RootFinding, Surface};
 use iso_jit::Jit;
 use iso_render::{
-    Camera, ImageFormat, Layers, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, Stopwatch, View,
-    Wanted, render,
+    Camera, ImageFormat, Layers, Look, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, Stopwatch,
+    View, Wanted, render,
 };
 use plotters::prelude::*;
 use rayon::ThreadPoolBuilder;
@@ -115,7 +115,7 @@ impl Paper {
         plan.compile(&surface)?;
         let clock = ProcessorClock::start();
         let tracer = plan.tracer(&surface, self.region)?;
-        let shading = Shading::new(&self.camera, false);
+        let shading = Shading::new(&self.camera, &Look::DEFAULT);
         let scene = Scene {
             plan: &plan,
             surface: &surface,

@@ -196,6 +196,72 @@ fn what_is_undecided_is_grey() {
     assert_eq!(pixels[3 * (16 * 48 + 24)..][..3], [112, 112, 118]);
 }
 
+/// The picture that is drawn with these flags, each pixel as red, green, blue and alpha.
+fn drawn(flags: &[&str]) -> image::RgbaImage {
+    let case = Case::new();
+    render(&case, "x^2 + y^2 + z^2 = 1", &[&["--box", "-1.5,1.5", "-o", "a.png", "-q"], flags].concat())
+        .exits(0);
+    image::open(case.path("a.png")).unwrap().into_rgba8()
+}
+
+#[test]
+fn colours_are_those_asked_for() {
+    // The corner is background, and the middle the sphere.
+    let corners = |flags: &[&str]| [(0, 0), (0, 31)].map(|(x, y)| drawn(flags).get_pixel(x, y).0);
+    assert_eq!(corners(&["--background", "navy,navy"]), [[0, 0, 128, 255]; 2]);
+    assert_eq!(corners(&["--background", "#0a141e"]), [[10, 20, 30, 255]; 2]);
+    let [top, bottom] = corners(&["--background", "black,white"]);
+    assert!(top[0] < 50 && bottom[0] > 240, "{top:?} above {bottom:?}");
+    let middle = |flags: &[&str]| drawn(flags).get_pixel(24, 16).0;
+    let [red, green, blue, _] = middle(&["--colors", "red"]);
+    assert!(red > 150 && green == blue && green < 100, "{red} {green} {blue}");
+    // Only the second colour is seen of a ball with its inside out.
+    let inside_out = |flags: &[&str]| {
+        let case = Case::new();
+        let flags = [&["--box", "-1.5,1.5", "-o", "a.png", "-q"], flags].concat();
+        render(&case, "1 - x^2 - y^2 - z^2", &flags).exits(0);
+        image::open(case.path("a.png")).unwrap().into_rgba8()
+    };
+    assert_eq!(inside_out(&["--colors", "red, lime"]), drawn(&["--colors", "lime"]));
+    assert_eq!(drawn(&["--colors", "#ec9c48,#488ac4"]), drawn(&[]));
+}
+
+#[test]
+fn a_background_may_be_left_out() {
+    let (opaque, transparent) = (drawn(&[]), drawn(&["--background", "none"]));
+    for (pixel, other) in transparent.pixels().zip(opaque.pixels()) {
+        let expected = if pixel[3] == 0 { [0; 4] } else { other.0 };
+        assert_eq!(pixel.0, expected);
+    }
+    let smooth = drawn(&["--background", "none", "--smooth", "4"]);
+    let covered: f64 = smooth.pixels().map(|pixel| f64::from(pixel[3]) / 255.0).sum();
+    let hits =
+        drawn(&["--background", "none", "--size", "192x128"]).pixels().filter(|pixel| pixel[3] > 0).count();
+    assert!((covered - hits as f64 / 16.0).abs() < 0.3, "{covered} pixels of {hits} sixteenths");
+    // No edge is mixed with what is not there.
+    assert!(smooth.pixels().all(|pixel| pixel[3] == 0 || pixel[0] > 60), "dark edges");
+}
+
+#[test]
+fn colours_that_cannot_be_drawn_are_refused() {
+    let case = Case::new();
+    for (flags, expected) in [
+        (["--colors", "redd"], "expected a colour such as `orange` or `#3a7bd5`, found `redd`"),
+        (["--colors", "red,green,blue"], "expected 1 colour or 2, found 3"),
+        (["--colors", "transparent"], "`transparent` is transparent; only --background none is"),
+        (["--background", "red,none"], "expected a colour such as `orange` or `#3a7bd5`, found `none`"),
+    ] {
+        render(&case, SPHERE, &flags).exits(2).mentions(expected);
+    }
+    for name in ["a.jpg", "a.gif", "a.bmp", "a.ppm"] {
+        let run = render(&case, SPHERE, &["--background", "none", "-o", name]);
+        run.exits(2).mentions("this format has no transparency");
+    }
+    let run = render(&case, SPHERE, &["--background", "none", "--turntable"]);
+    run.exits(2).mentions("choose a .png, .webp, .tif or .qoi file");
+    assert!(case.names().is_empty());
+}
+
 #[test]
 fn outputs_that_cannot_be_written_are_known_before_the_work() {
     let case = Case::new();

@@ -9,7 +9,7 @@ use iso_expr::{Engine, Interpreter, Program};
 use iso_grid::{Certified, GridSettings, Kernel, Surface, Tracer};
 use iso_jit::Jit;
 use iso_render::{
-    Camera, Layers, Picture, Plan, Projection, Scene, Shading, Smoothing, Status, StatusCounts, Wanted,
+    Camera, Layers, Look, Picture, Plan, Projection, Scene, Shading, Smoothing, Status, StatusCounts, Wanted,
     render_over,
 };
 
@@ -98,7 +98,7 @@ impl Iso {
             followed.compile(kernel).ok();
         }
         let camera = view.camera()?;
-        let shading = Shading::new(&camera, false);
+        let shading = Shading::new(&camera, &Look::DEFAULT);
         Ok(Self { surface, method, tracer, camera, shading, view, picture: None })
     }
 

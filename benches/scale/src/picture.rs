@@ -8,7 +8,9 @@ use glam::DVec3;
 use iso_expr::{Engine, Interpreter, Program};
 use iso_grid::{Certified, Region, Surface};
 use iso_jit::Jit;
-use iso_render::{Camera, Layers, Plan, Projection, Scene, Shading, Size, Smoothing, View, Wanted, render};
+use iso_render::{
+    Camera, Layers, Look, Plan, Projection, Scene, Shading, Size, Smoothing, View, Wanted, render,
+};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// A surface with everything prepared that can be before its picture is drawn.
@@ -64,7 +66,7 @@ impl Subject {
             layers: Layers { depth: true, normals: true, ..Layers::default() },
             smoothing: Smoothing::NONE,
         });
-        let shading = Shading::new(&camera, false);
+        let shading = Shading::new(&camera, &Look::DEFAULT);
         let scene = Scene {
             plan: &plan,
             surface: &self.surface,

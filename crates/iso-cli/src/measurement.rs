@@ -6,7 +6,7 @@ use std::sync::Arc;
 use iso_expr::{Engine, Program};
 use iso_grid::{Counters, Method, Region, Surface, Tracer};
 use iso_render::{
-    Camera, Layers, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, Wanted, render,
+    Camera, Layers, Look, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, Wanted, render,
 };
 
 use crate::clock::{Cost, Deadline, weighed};
@@ -109,7 +109,7 @@ impl Subject {
         compiled?;
         let (prepared, preprocess) = weighed(|| plan.tracer(&surface, self.region));
         let tracer = adapt(prepared?);
-        let shading = Shading::new(&self.camera, false);
+        let shading = Shading::new(&self.camera, &Look::DEFAULT);
         let scene = Scene {
             plan: &plan,
             surface: &surface,

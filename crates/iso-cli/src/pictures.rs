@@ -39,6 +39,7 @@ impl PictureFiles {
         let color = color.map(|path| {
             let format = ImageFormat::of(&path)?;
             check_size(format, flags.size)?;
+            check_transparency(format, flags)?;
             Ok::<_, Failure>((OutputFile::new(rename(&path))?, format))
         });
         let other = |path: &Option<PathBuf>, extension, flag| {
@@ -105,11 +106,22 @@ fn check_size(format: ImageFormat, size: Size) -> Result<(), Failure> {
     Err(Failure::usage(problem, "choose a smaller --size, or a .png file"))
 }
 
+/// Refuses a transparent background that the format cannot keep.
+fn check_transparency(format: ImageFormat, flags: &LayerFlags) -> Result<(), Failure> {
+    if format.has_transparency() || !flags.look.is_transparent() {
+        return Ok(());
+    }
+    let problem = "--background none is given, but this format has no transparency";
+    Err(Failure::usage(problem, "choose a .png, .webp, .tif or .qoi file"))
+}
+
 /// What must be kept of a picture to write the files that `flags` name.
 pub(crate) fn layers(flags: &LayerFlags) -> Layers {
     let points = flags.points.is_some();
+    let is_shaded = color(flags, STILL).is_some();
     Layers {
-        color: color(flags, STILL).is_some(),
+        color: is_shaded,
+        coverage: is_shaded && flags.look.is_transparent(),
         depth: points || flags.depth.is_some(),
         normals: points || flags.normals.is_some(),
         points,
@@ -126,7 +138,9 @@ const ANIMATION: &str = "iso.gif";
 /// The file of all pictures of a sequence, unless each has its own.
 pub(crate) fn animation(flags: &LayerFlags) -> Result<Option<OutputFile>, Failure> {
     let Some(path) = color(flags, ANIMATION).filter(|path| is_animation(path)) else { return Ok(None) };
-    check_size(ImageFormat::of(&path)?, flags.size)?;
+    let format = ImageFormat::of(&path)?;
+    check_size(format, flags.size)?;
+    check_transparency(format, flags)?;
     OutputFile::new(path).map(Some)
 }
 

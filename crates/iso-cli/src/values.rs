@@ -6,7 +6,7 @@ use std::time::Duration;
 use glam::DVec3;
 use iso_expr::Ast;
 use iso_grid::{GridSettings, Region};
-use iso_render::{Size, Smoothing};
+use iso_render::{Background, Size, Smoothing};
 use serde::Serialize;
 
 /// A finite number, or a formula of one: `2pi`, `1/3`.
@@ -74,6 +74,35 @@ fn numbers(text: &str) -> Result<Vec<f64>, String> {
 pub(crate) fn size(text: &str) -> Result<Size, String> {
     let (width, height) = text.split_once(['x', 'X', '×']).unwrap_or((text, text));
     Size::new(count(width)?, count(height)?).map_err(|error| error.to_string())
+}
+
+/// One colour for both, or two: names of CSS, or `#rrggbb`.
+pub(crate) fn colors(text: &str) -> Result<[[u8; 3]; 2], String> {
+    let colors = text.split(',').map(color).collect::<Result<Vec<_>, _>>()?;
+    match colors[..] {
+        [both] => Ok([both; 2]),
+        [one, other] => Ok([one, other]),
+        ref others => Err(format!("expected 1 colour or 2, found {}", others.len())),
+    }
+}
+
+fn color(text: &str) -> Result<[u8; 3], String> {
+    let text = text.trim();
+    let [red, green, blue, alpha] = csscolorparser::parse(text)
+        .map_err(|_| format!("expected a colour such as `orange` or `#3a7bd5`, found `{text}`"))?
+        .to_rgba8();
+    let is_opaque = alpha == u8::MAX;
+    is_opaque
+        .then_some([red, green, blue])
+        .ok_or_else(|| format!("`{text}` is transparent; only --background none is"))
+}
+
+/// `none`, or [`colors`] from top to bottom.
+pub(crate) fn background(text: &str) -> Result<Background, String> {
+    if text.trim() == "none" {
+        return Ok(Background::Transparent);
+    }
+    colors(text).map(|[top, bottom]| Background::Colors { top, bottom })
 }
 
 /// A step between samples in parts of a cell.

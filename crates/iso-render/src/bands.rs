@@ -13,6 +13,7 @@ use crate::{Picture, Status};
 pub(crate) struct Band<'a> {
     is_clear: bool,
     pub(crate) color: &'a mut [[u8; 3]],
+    pub(crate) coverage: &'a mut [u8],
     pub(crate) depth: &'a mut [f64],
     pub(crate) normals: &'a mut [Vec3],
     pub(crate) points: &'a mut [DVec3],
@@ -26,6 +27,7 @@ impl<'a> Band<'a> {
         let pixels = rows as usize * picture.size.width() as usize;
         let count = picture.size.height().div_ceil(rows);
         let mut color = cut(&mut picture.color, pixels);
+        let mut coverage = cut(&mut picture.coverage, pixels);
         let mut depth = cut(&mut picture.depth, pixels);
         let mut normals = cut(&mut picture.normals, pixels);
         let mut points = cut(&mut picture.points, pixels);
@@ -35,6 +37,7 @@ impl<'a> Band<'a> {
             Mutex::new(Self {
                 is_clear: false,
                 color: color(),
+                coverage: coverage(),
                 depth: depth(),
                 normals: normals(),
                 points: points(),
@@ -51,6 +54,7 @@ impl<'a> Band<'a> {
     pub(crate) fn clear(&mut self) {
         if !self.is_clear {
             self.is_clear = true;
+            self.coverage.fill(0);
             self.depth.fill(f64::NAN);
             cast_slice_mut::<Vec3, f32>(self.normals).fill(f32::NAN);
             cast_slice_mut::<DVec3, f64>(self.points).fill(f64::NAN);

@@ -11,6 +11,7 @@ mod color;
 #[cfg(any(feature = "images", feature = "openexr"))]
 mod encode;
 mod layer;
+mod look;
 mod picture;
 mod plan;
 mod render;
@@ -26,6 +27,7 @@ pub use encode::EncodeError;
 #[cfg(feature = "images")]
 pub use encode::{Animation, ImageFormat};
 pub use layer::Layer;
+pub use look::{Background, Look};
 pub use picture::{Layers, Picture, Status, StatusCounts};
 pub use plan::{Buffer, Decision, Given, Pass, Plan, Wanted};
 pub use render::{Progress, RenderError, Scene, render, render_over};

@@ -75,6 +75,8 @@ impl std::ops::AddAssign for StatusCounts {
 pub struct Layers {
     /// The shaded picture.
     pub color: bool,
+    /// How much of each pixel of the shaded picture shows something.
+    pub coverage: bool,
     /// The distance along each ray.
     pub depth: bool,
     /// The unit normals.
@@ -89,8 +91,15 @@ pub struct Layers {
 
 impl Layers {
     /// The shaded picture alone.
-    pub const COLOR: Self =
-        Self { color: true, depth: false, normals: false, points: false, statuses: false, outcomes: false };
+    pub const COLOR: Self = Self {
+        color: true,
+        coverage: false,
+        depth: false,
+        normals: false,
+        points: false,
+        statuses: false,
+        outcomes: false,
+    };
 }
 
 /// A picture: the layers that were asked for, rows from top to bottom, and what they took.
@@ -102,6 +111,9 @@ pub struct Picture {
     pub size: Size,
     /// Red, green and blue bytes in sRGB; [`Picture::UNFINISHED`] where pixels are unfinished.
     pub color: Layer<[u8; 3]>,
+    /// How much of each pixel shows something in front of the background, from 0 to 255: nothing but where [`Status::Miss`] is. Unfinished
+    /// pixels are covered.
+    pub coverage: Layer<u8>,
     /// The distance t along each ray; NaN where nothing was found, −∞ where pixels are unfinished.
     pub depth: Layer<f64>,
     /// Unit normals towards larger F, each coordinate rounded to single precision, as files hold them, for what takes longest on simple
@@ -133,6 +145,7 @@ impl Picture {
         Self {
             size,
             color: Layer::default(),
+            coverage: Layer::default(),
             depth: Layer::default(),
             normals: Layer::default(),
             points: Layer::default(),
@@ -149,6 +162,7 @@ impl Picture {
     pub(crate) fn make_room(&mut self, layers: Layers) -> Option<()> {
         let pixels = |wanted: bool| if wanted { self.size.pixels() } else { 0 };
         self.color.make_room(pixels(layers.color))?;
+        self.coverage.make_room(pixels(layers.coverage))?;
         self.depth.make_room(pixels(layers.depth))?;
         self.normals.make_room(pixels(layers.normals))?;
         self.points.make_room(pixels(layers.points))?;

@@ -35,7 +35,7 @@ pub struct Plan {
     /// Whether the method compiles none of them ahead.
     is_left_to_places: bool,
     passes: [Decision<Pass>; 6],
-    buffers: [Decision<Buffer>; 6],
+    buffers: [Decision<Buffer>; 7],
 }
 
 /// Whether something is part of the plan.
@@ -110,6 +110,8 @@ impl Pass {
 pub enum Buffer {
     /// [`Layers::color`].
     Color,
+    /// [`Layers::coverage`].
+    Coverage,
     /// [`Layers::depth`].
     Depth,
     /// [`Layers::normals`].
@@ -127,6 +129,7 @@ impl Buffer {
     pub fn name(self) -> &'static str {
         match self {
             Self::Color => "color",
+            Self::Coverage => "coverage",
             Self::Depth => "depth",
             Self::Normals => "normals",
             Self::Points => "points",
@@ -153,6 +156,7 @@ impl Plan {
                 .map(|pass| decide(pass, wanted.pass(pass))),
             buffers: [
                 Buffer::Color,
+                Buffer::Coverage,
                 Buffer::Depth,
                 Buffer::Normals,
                 Buffer::Points,
@@ -393,9 +397,10 @@ impl Wanted<'_> {
     }
 
     fn buffer(&self, buffer: Buffer) -> Verdict {
-        let Layers { color, depth, normals, points, statuses, outcomes } = self.layers;
+        let Layers { color, coverage, depth, normals, points, statuses, outcomes } = self.layers;
         let wanted = match buffer {
             Buffer::Color => color,
+            Buffer::Coverage => coverage,
             Buffer::Depth => depth,
             Buffer::Normals => normals,
             Buffer::Points => points,

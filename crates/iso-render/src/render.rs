@@ -225,6 +225,7 @@ impl Tile {
         band.clear();
         if self.content == Content::Unfinished {
             self.fill_layer(Picture::UNFINISHED, band.color, size);
+            self.fill_layer(u8::MAX, band.coverage, size);
             self.fill_layer(f64::NEG_INFINITY, band.depth, size);
             self.fill_layer(Vec3::ZERO, band.normals, size);
             self.fill_layer(Status::Unfinished, band.statuses, size);
@@ -236,6 +237,8 @@ impl Tile {
                 let (column, row) = (place as u32 % area.width, place as u32 / area.width);
                 camera.ray(area.column + column, area.row + row).at(t)
             };
+            let is_covered = |place: usize| Status::from(&outcomes[place]) != Status::Miss;
+            self.put_layer(band.coverage, size, |place| if is_covered(place) { u8::MAX } else { 0 });
             self.put_layer(band.depth, size, |place| found(&outcomes[place]).unwrap_or(f64::NAN));
             self.put_layer(band.normals, size, |place| normals[place].as_vec3());
             self.put_layer(band.points, size, |place| {

@@ -4,7 +4,7 @@ use glam::DVec3;
 use iso_grid::Outcome;
 
 use crate::color::{Color, color_from_srgb};
-use crate::{Camera, Size};
+use crate::{Background, Camera, Look, Size};
 
 /// Materials and lights. Both sides of the surface are lit alike and told apart by colour.
 ///
@@ -20,12 +20,11 @@ pub struct Shading {
     unlit: Color,
     /// Where it is not known whether there is a surface.
     unknown: Color,
-    background_top: Color,
-    background_bottom: Color,
+    background: [Color; 2],
     /// How much of the ambient light comes from above rather than from all sides.
     sky: DVec3,
     lights: [Light; 3],
-    statuses_shown: bool,
+    shows_statuses: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -41,28 +40,30 @@ struct Light {
 const AMBIENT: f64 = 0.14;
 
 impl Shading {
-    /// The look of pictures by default, with lights around `camera`: undecided pixels are grey. With `statuses_shown`, pixels that are
-    /// not a plain hit or miss are painted over: touches green, undecided ones magenta.
-    pub fn new(camera: &Camera, statuses_shown: bool) -> Self {
+    /// Pictures that look like this, with lights around `camera`.
+    pub fn new(camera: &Camera, look: &Look) -> Self {
         let light = |right: f64, up: f64, back: f64, strength: f64, highlight: f64| {
             let towards = (right * camera.right() + up * camera.up() - back * camera.forward()).normalize();
             let halfway = (towards - camera.forward()).normalize();
             Light { towards, halfway, strength, highlight }
         };
+        let background = match look.background {
+            Background::Colors { top, bottom } => [top, bottom].map(color_from_srgb),
+            Background::Transparent => [Color::ZERO; 2],
+        };
         Self {
-            outside: color_from_srgb([236, 156, 72]),
-            inside: color_from_srgb([72, 138, 196]),
+            outside: color_from_srgb(look.outside),
+            inside: color_from_srgb(look.inside),
             unlit: color_from_srgb([150, 150, 150]),
             unknown: color_from_srgb([112, 112, 118]),
-            background_top: color_from_srgb([250, 251, 253]),
-            background_bottom: color_from_srgb([206, 214, 224]),
+            background,
             sky: camera.up(),
             lights: [
                 light(-0.55, 0.75, 0.65, 0.62, 0.22),
                 light(0.85, 0.10, 0.55, 0.18, 0.0),
                 light(0.0, 0.0, 1.0, 0.20, 0.04),
             ],
-            statuses_shown,
+            shows_statuses: look.shows_statuses,
         }
     }
 
@@ -71,10 +72,10 @@ impl Shading {
     pub fn color(&self, outcome: &Outcome, normal: DVec3, view: DVec3, background: Color) -> Color {
         match outcome {
             Outcome::Miss => background,
-            Outcome::Undecided(_) if self.statuses_shown => color_from_srgb([214, 40, 160]),
+            Outcome::Undecided(_) if self.shows_statuses => color_from_srgb([214, 40, 160]),
             // Neither the surface nor its absence is proven, and neither is drawn.
             Outcome::Undecided(_) => self.unknown,
-            Outcome::Touch(_) if self.statuses_shown => {
+            Outcome::Touch(_) if self.shows_statuses => {
                 let lit = self.surface(normal, view);
                 0.35 * lit + 0.65 * color_from_srgb([40, 170, 90])
             }
@@ -85,7 +86,8 @@ impl Shading {
     /// What is seen in a row where nothing is found.
     pub fn background(&self, row: u32, size: Size) -> Color {
         let depth = (f64::from(row) + 0.5) / f64::from(size.height());
-        self.background_top.lerp(self.background_bottom, depth)
+        let [top, bottom] = self.background;
+        top.lerp(bottom, depth)
     }
 
     fn surface(&self, normal: DVec3, view: DVec3) -> Color {

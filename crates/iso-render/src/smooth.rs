@@ -31,7 +31,7 @@ impl Smoothing {
 
     /// Turns a picture that was drawn in the size of [`Smoothing::drawn`] into the finished one.
     ///
-    /// Only its colours are averaged, for distances, normals, points and statuses have no average: those layers go. The
+    /// Only its colours and what covers the background are averaged, for distances, normals, points and statuses have no average: those layers go. The
     /// counts stay those of the drawn pixels.
     pub fn finish(self, picture: &mut Picture) {
         if self == Self::NONE {
@@ -40,26 +40,55 @@ impl Smoothing {
         let drawn = picture.size;
         let size = Size::new(drawn.width() / self.0, drawn.height() / self.0)
             .expect("the finished picture has pixels");
-        let finished = (0..size.height())
-            .flat_map(|row| (0..size.width()).map(move |column| (column, row)))
-            .map(|(column, row)| srgb_from_color(self.average(&picture.color, drawn, column, row)))
-            .collect();
-        (picture.size, picture.color) = (size, finished);
+        let places = (0..size.height()).flat_map(|row| (0..size.width()).map(move |column| (column, row)));
+        let squares = places.map(|(column, row)| self.square(drawn, column, row));
+        let (color, coverage) = if picture.coverage.is_empty() {
+            (
+                squares.map(|square| srgb_from_color(average(&picture.color, square))).collect(),
+                Layer::default(),
+            )
+        } else {
+            let covered = |square| average_of_covered(&picture.color, &picture.coverage, square);
+            let (color, coverage): (Vec<_>, Vec<_>) = squares.map(covered).unzip();
+            (color.into(), coverage.into())
+        };
+        (picture.size, picture.color, picture.coverage) = (size, color, coverage);
         picture.depth = Layer::default();
         picture.normals = Layer::default();
         picture.points = Layer::default();
         picture.statuses.clear();
     }
 
-    /// The average of the drawn pixels that belong to a finished one.
-    fn average(self, pixels: &[[u8; 3]], drawn: Size, column: u32, row: u32) -> Color {
+    /// The drawn pixels that belong to a finished one.
+    fn square(self, drawn: Size, column: u32, row: u32) -> impl Iterator<Item = usize> + Clone {
         let factor = self.0;
-        let square = (0..factor).flat_map(|line| {
+        (0..factor).flat_map(move |line| {
             let start = drawn.offset(column * factor, row * factor + line);
-            &pixels[start..start + factor as usize]
-        });
-        square.map(|&bytes| color_from_srgb(bytes)).sum::<Color>() / f64::from(factor * factor)
+            start..start + factor as usize
+        })
     }
+}
+
+/// The average of some pixels.
+fn average(colors: &[[u8; 3]], pixels: impl Iterator<Item = usize>) -> Color {
+    let (sum, count) = pixels
+        .fold((Color::ZERO, 0.0), |(sum, count), pixel| (sum + color_from_srgb(colors[pixel]), count + 1.0));
+    sum / count
+}
+
+/// The average of those of some pixels that are covered, and of their coverage, rounded to nearest.
+fn average_of_covered(
+    colors: &[[u8; 3]],
+    coverage: &[u8],
+    pixels: impl Iterator<Item = usize> + Clone,
+) -> ([u8; 3], u8) {
+    let (sum, count) =
+        pixels.clone().fold((0, 0), |(sum, count), pixel| (sum + u32::from(coverage[pixel]), count + 1));
+    let color = match sum {
+        0 => Color::ZERO,
+        _ => average(colors, pixels.filter(|pixel| coverage[*pixel] > 0)),
+    };
+    (srgb_from_color(color), ((sum + count / 2) / count) as u8)
 }
 
 #[cfg(test)]
@@ -80,6 +109,22 @@ mod tests {
         // Half of the light is byte 188 in sRGB.
         assert_eq!(*picture.color, [[188; 3], plain]);
         assert_eq!((picture.size.width(), picture.size.height()), (2, 1));
+    }
+
+    #[test]
+    fn colours_are_those_of_what_is_covered() {
+        let smoothing = Smoothing::new(2).unwrap();
+        let mut picture = Picture::empty(Size::new(6, 2).unwrap());
+        // A quarter of the first square is covered, all of the second, and nothing of the third.
+        let (nothing, shown, other) = ([0; 3], [200, 100, 50], [9, 9, 9]);
+        let row = [nothing, shown, other, other, nothing, nothing];
+        let below = [nothing, nothing, other, other, nothing, nothing];
+        picture.color = [row, below].concat().into();
+        picture.coverage =
+            picture.color.iter().map(|color| if *color == nothing { 0 } else { 255 }).collect();
+        smoothing.finish(&mut picture);
+        assert_eq!(*picture.color, [shown, other, nothing]);
+        assert_eq!(*picture.coverage, [64, 255, 0]);
     }
 
     #[test]

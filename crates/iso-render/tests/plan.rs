@@ -6,13 +6,20 @@ use glam::{DVec3, Vec3};
 use iso_expr::{Ast, Axis, Interpreter, Program};
 use iso_grid::{Certified, GridSettings, Kernel, Method, Region, RootFinding, Surface};
 use iso_render::{
-    Buffer, Camera, Given, Layers, Pass, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, View,
-    Wanted, render,
+    Buffer, Camera, Given, Layers, Look, Pass, Picture, Plan, Projection, Scene, Shading, Size, Smoothing,
+    View, Wanted, render,
 };
 
 const PAPER: &str = "(x^2+y^2-1)^2 + 4z^2 + 0.5x = 0.2";
-const ALL: Layers =
-    Layers { color: true, depth: true, normals: true, points: true, statuses: true, outcomes: true };
+const ALL: Layers = Layers {
+    color: true,
+    coverage: true,
+    depth: true,
+    normals: true,
+    points: true,
+    statuses: true,
+    outcomes: true,
+};
 const DEPTH: Layers = Layers { color: false, depth: true, ..Layers::COLOR };
 const ORTHOGRAPHIC: Projection = Projection::Orthographic { view_width: None };
 
@@ -47,7 +54,7 @@ fn draw(program: &Program, plan: &Plan) -> (Picture, Vec<Kernel>) {
     let surface = Surface::new(Arc::new(Interpreter), program.clone());
     let region = Region::new(DVec3::splat(-1.5), DVec3::splat(1.5)).unwrap();
     let camera = Camera::new(View::DEFAULT, ORTHOGRAPHIC, &region, size).unwrap();
-    let shading = Shading::new(&camera, false);
+    let shading = Shading::new(&camera, &Look::DEFAULT);
     let tracer = plan.tracer(&surface, region).unwrap();
     let scene =
         Scene { plan, surface: &surface, tracer: tracer.as_ref(), camera: &camera, shading: &shading };
@@ -107,7 +114,7 @@ fn layers_left_out_are_not_computed_and_change_no_other() {
     for method in methods() {
         let (all, _) = draw(&program, &Plan::new(&wanted(&program, method, ALL)));
         assert!(all.counters.gradient_evaluations > 0);
-        let every_choice = (0..64).map(|choice| {
+        let every_choice = (0..128).map(|choice| {
             let chosen = |layer: u32| choice >> layer & 1 == 1;
             Layers {
                 color: chosen(0),
@@ -116,6 +123,7 @@ fn layers_left_out_are_not_computed_and_change_no_other() {
                 points: chosen(3),
                 statuses: chosen(4),
                 outcomes: chosen(5),
+                coverage: chosen(6),
             }
         });
         for layers in every_choice {
@@ -123,6 +131,7 @@ fn layers_left_out_are_not_computed_and_change_no_other() {
             let (picture, _) = draw(&program, &plan);
             let full = |wanted: bool| if wanted { all.size.pixels() } else { 0 };
             assert_eq!(*picture.color, all.color[..full(layers.color)], "{method:?} {layers:?}");
+            assert_eq!(*picture.coverage, all.coverage[..full(layers.coverage)]);
             let depths = |depths: &[f64]| depths.iter().map(|t| t.to_bits()).collect::<Vec<_>>();
             assert_eq!(depths(&picture.depth), depths(&all.depth[..full(layers.depth)]));
             assert_eq!(
@@ -135,9 +144,9 @@ fn layers_left_out_are_not_computed_and_change_no_other() {
             assert_eq!(picture.counts, all.counts);
             assert_eq!(picture.counters.gradient_evaluations > 0, plan.runs(Pass::Normals));
             let kept: Vec<bool> = plan.buffers().iter().map(|buffer| buffer.taken).collect();
-            let Layers { color, depth, normals, points, statuses, outcomes } = layers;
-            assert_eq!(kept, [color, depth, normals, points, statuses, outcomes]);
-            assert_eq!(plan.buffers()[1].subject, Buffer::Depth);
+            let Layers { color, coverage, depth, normals, points, statuses, outcomes } = layers;
+            assert_eq!(kept, [color, coverage, depth, normals, points, statuses, outcomes]);
+            assert_eq!(plan.buffers()[2].subject, Buffer::Depth);
         }
     }
 }

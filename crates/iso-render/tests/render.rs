@@ -6,12 +6,19 @@ use glam::{DVec3, Vec3};
 use iso_expr::{Axis, Interpreter, NodeId, Operation, Program};
 use iso_grid::{Certified, Method, Region, Stop, Surface};
 use iso_render::{
-    Camera, Layers, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, Status, StatusCounts, View,
-    Wanted, render_over,
+    Camera, Layers, Look, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, Status, StatusCounts,
+    View, Wanted, render_over,
 };
 
-const ALL: Layers =
-    Layers { color: true, depth: true, normals: true, points: true, statuses: true, outcomes: true };
+const ALL: Layers = Layers {
+    color: true,
+    coverage: true,
+    depth: true,
+    normals: true,
+    points: true,
+    statuses: true,
+    outcomes: true,
+};
 
 /// x² + y² + z² − 1
 fn sphere() -> Program {
@@ -62,7 +69,7 @@ fn draw_over(picture: &mut Picture, stop: &Stop, threads: usize, last: u64) {
         smoothing: Smoothing::NONE,
     });
     let tracer = plan.tracer(&surface, region).unwrap();
-    let shading = Shading::new(&camera, false);
+    let shading = Shading::new(&camera, &Look::DEFAULT);
     let scene =
         Scene { plan: &plan, surface: &surface, tracer: tracer.as_ref(), camera: &camera, shading: &shading };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

@@ -8,6 +8,7 @@ mod eval;
 mod explain;
 mod formula;
 mod limit;
+mod look;
 mod method;
 mod render;
 mod report;
@@ -24,6 +25,7 @@ pub(crate) use explain::KernelName;
 pub(crate) use explain::{ExplainFlags, Section};
 pub(crate) use formula::{FormulaFlags, LevelFlag};
 pub(crate) use limit::LimitFlags;
+pub(crate) use look::LookFlags;
 pub(crate) use method::{
     EngineFlag, EngineName, MethodFlags, MethodName, RegionFlag, RootFinderName, ThreadsFlag,
 };

@@ -6,7 +6,8 @@ use clap::Args;
 use iso_render::{Size, Smoothing};
 
 use super::{
-    CameraFlags, EngineFlag, FormulaFlags, LevelFlag, LimitFlags, MethodFlags, SequenceFlags, ThreadsFlag,
+    CameraFlags, EngineFlag, FormulaFlags, LevelFlag, LimitFlags, LookFlags, MethodFlags, SequenceFlags,
+    ThreadsFlag,
 };
 use crate::values;
 
@@ -63,10 +64,6 @@ pub(crate) struct LayerFlags {
     #[arg(conflicts_with_all = ["depth", "normals", "points"])]
     pub(crate) smooth: Smoothing,
 
-    /// Paint over pixels that are not proven: touches green, undecided ones magenta
-    #[arg(long)]
-    pub(crate) show_status: bool,
-
     /// Write the distance along each ray, as the channel Z of an OpenEXR file; nan where nothing was found
     #[arg(long, value_name = "FILE.exr")]
     pub(crate) depth: Option<PathBuf>,
@@ -78,6 +75,10 @@ pub(crate) struct LayerFlags {
     /// Write a table with a row for each pixel: column,row,status,t,x,y,z,nx,ny,nz
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) points: Option<PathBuf>,
+
+    // The last, for what follows would have its heading.
+    #[command(flatten)]
+    pub(crate) look: LookFlags,
 }
 
 /// What is said when the picture is done.
@@ -99,6 +100,7 @@ Examples:
   iso render 'x^4 - 5x^2 + y^4 - 5y^2 + z^4 - 5z^2 + 11.8' --box -3,3 --ortho --view-width 8
   iso render 'sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)' --level 0.3 --box -4,4 --yaw -20 --pitch 40
   iso render 'x^4 + y^4 + z^4 = 1' --smooth 3 -o figure.png
+  iso render 'x^2 + y^2 = z^2 + 0.1' --colors gold,teal --background none -o logo.png
   iso render '-x^2 - y^2 - z^2' --level -1 --method grid --grid 60 --json
   iso render @heart.txt --set a=0.5 --size 1920x1080 -o heart.png --points points.csv
   iso render 'x^2 + y^2 = z' --ortho --depth depth.exr

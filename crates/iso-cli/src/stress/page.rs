@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use iso_render::{EncodeError, Shading, srgb_from_color};
+use iso_render::{EncodeError, Look, Shading, srgb_from_color};
 
 use super::measure::{Measured, Seen};
 use crate::comparison::{Answers, Verdict};
@@ -66,7 +66,7 @@ fn write_case(writer: &mut dyn Write, case: &Measured) -> io::Result<()> {
 
 /// The address of the picture, wrong answers painted over.
 fn thumbnail(view: &Seen, answers: &Answers, verdicts: &[Verdict]) -> Result<String, EncodeError> {
-    let shading = Shading::new(&view.camera, true);
+    let shading = Shading::new(&view.camera, &Look { shows_statuses: true, ..Look::DEFAULT });
     let color = |pixel: usize| match verdicts[pixel] {
         Verdict::False => FALSE_HIT,
         Verdict::Missed => MISSED_ROOT,

@@ -34,6 +34,12 @@ impl ImageFormat {
         }
     }
 
+    /// Whether pictures keep a [transparent background](crate::Background::Transparent).
+    pub fn has_transparency(self) -> bool {
+        use image::ImageFormat::{Png, Qoi, Tiff, WebP};
+        matches!(self.0, Png | Qoi | Tiff | WebP)
+    }
+
     /// The most columns and rows that a file holds.
     pub fn longest_side(self) -> u32 {
         match self.0 {
@@ -45,23 +51,31 @@ impl ImageFormat {
 }
 
 impl Picture {
-    /// Writes the shaded layer in `format`.
+    /// Writes the shaded layer in `format`, and its coverage where there is one and the format [keeps it](ImageFormat::has_transparency).
     ///
     /// # Errors
     /// When the format cannot hold a picture of this size, or writing fails.
     pub fn write_color(&self, format: ImageFormat, mut writer: impl Write + Seek) -> Result<(), EncodeError> {
-        let (bytes, width, height) = (self.color.as_flattened(), self.size.width(), self.size.height());
-        let rgb = ExtendedColorType::Rgb8;
+        let (width, height) = (self.size.width(), self.size.height());
+        let with_coverage: Vec<u8>;
+        let (bytes, color) = if self.coverage.is_empty() || !format.has_transparency() {
+            (self.color.as_flattened(), ExtendedColorType::Rgb8)
+        } else {
+            let pixels = self.color.iter().zip(self.coverage.iter());
+            with_coverage =
+                pixels.flat_map(|(&[red, green, blue], alpha)| [red, green, blue, *alpha]).collect();
+            (&with_coverage[..], ExtendedColorType::Rgba8)
+        };
         match format.0 {
             // The picture is waited for: half the compression time for a few per cent of size.
             image::ImageFormat::Png => {
                 PngEncoder::new_with_quality(writer, CompressionType::Fast, FilterType::Adaptive)
-                    .write_image(bytes, width, height, rgb)?;
+                    .write_image(bytes, width, height, color)?;
             }
             image::ImageFormat::Jpeg => {
-                JpegEncoder::new_with_quality(writer, 95).write_image(bytes, width, height, rgb)?;
+                JpegEncoder::new_with_quality(writer, 95).write_image(bytes, width, height, color)?;
             }
-            other => image::write_buffer_with_format(&mut writer, bytes, width, height, rgb, other)?,
+            other => image::write_buffer_with_format(&mut writer, bytes, width, height, color, other)?,
         }
         Ok(())
     }
@@ -111,6 +125,21 @@ mod tests {
             picture.write_color(format, &mut file).unwrap();
             let read = image::load_from_memory_with_format(file.get_ref(), format.0).unwrap().into_rgb8();
             assert_eq!((read.dimensions(), read.as_raw().as_slice()), ((3, 2), picture.color.as_flattened()));
+        }
+    }
+
+    #[test]
+    fn coverage_is_kept_where_there_is_transparency() {
+        let mut picture = picture();
+        picture.coverage = vec![0, 255, 128, 7, 255, 0].into();
+        for extension in ImageFormat::EXTENSIONS {
+            let format = ImageFormat::of(&Path::new("a").with_extension(extension)).unwrap();
+            let mut file = Cursor::new(Vec::new());
+            picture.write_color(format, &mut file).unwrap();
+            let read = image::load_from_memory_with_format(file.get_ref(), format.0).unwrap();
+            let alphas: Vec<_> = read.to_rgba8().pixels().map(|pixel| pixel[3]).collect();
+            let kept = if format.has_transparency() { &*picture.coverage } else { &[255; 6] };
+            assert_eq!(alphas, kept, "{extension}");
         }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use iso_expr::Engine;
 use iso_grid::{Counters, Fitted, GridError, Kernel, Method, Region, Tracer};
-use iso_render::{Animation, Pass, Picture, Scene, Shading, Size, Smoothing, render_over};
+use iso_render::{Animation, Look, Pass, Picture, Scene, Shading, Size, Smoothing, render_over};
 use rayon::ThreadPool;
 
 use super::shots::{Shot, Subject, shots};
@@ -30,7 +30,7 @@ pub(super) struct Request {
     smoothing: Smoothing,
     /// The size in which pictures are drawn, before they are smoothed.
     drawn: Size,
-    shows_status: bool,
+    look: Look,
     /// Where all pictures go together.
     animation: Option<OutputFile>,
     engine: Arc<dyn Engine>,
@@ -74,7 +74,7 @@ impl Request {
             region: picture.method.region.region,
             smoothing,
             drawn,
-            shows_status: picture.output.show_status,
+            look: picture.output.look.look(),
             animation: flags.sequence.is_wanted().then(|| animation(&picture.output)).transpose()?.flatten(),
             engine,
             threads: threads(&picture.threads)?,
@@ -176,7 +176,7 @@ impl Request {
                 new
             }
         };
-        let shading = Shading::new(&camera, self.shows_status);
+        let shading = Shading::new(&camera, &self.look);
         let tracer = &*prepared.insert(known).tracer;
         let scene = Scene { plan, surface, tracer, camera: &camera, shading: &shading };
         self.interruption.begin_work();
@@ -201,7 +201,7 @@ impl Request {
             pixels,
             rays_in_region: picture.counters.rays_in_region,
             is_certified: matches!(plan.method(), Method::Certified { .. }),
-            shows_status: self.shows_status,
+            shows_status: self.look.shows_statuses,
         };
         Ok(Some(Summary {
             files: files.names(),
