@@ -118,6 +118,11 @@ impl Run {
         self.output.status.code()
     }
 
+    /// Standard output, whatever it holds.
+    pub(crate) fn bytes(&self) -> &[u8] {
+        &self.output.stdout
+    }
+
     /// Standard output.
     pub(crate) fn stdout(&self) -> String {
         String::from_utf8_lossy(&self.output.stdout).into_owned()

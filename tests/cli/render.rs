@@ -37,6 +37,20 @@ fn every_format_can_be_written() {
 }
 
 #[test]
+fn pictures_go_to_standard_output() {
+    let case = Case::new();
+    render(&case, SPHERE, &["-o", "a.png", "-q"]).exits(0);
+    let run = render(&case, SPHERE, &["-o", "-"]).exits(0);
+    assert_eq!(run.bytes(), case.content("a.png"));
+    assert!(run.stderr().starts_with("-: 48x32 pixels: "), "{}", run.stderr());
+    render(&case, SPHERE, &["-o", "-", "--json"]).exits(2).mentions("both go to standard output");
+    render(&case, SPHERE, &["-o", "-", "--turntable"])
+        .exits(2)
+        .mentions("a sequence has no place in standard output");
+    assert_eq!(case.names(), ["a.png"]);
+}
+
+#[test]
 fn the_picture_shows_the_sphere() {
     let case = Case::new();
     let ortho = ["--ortho", "--view-width", "4", "--size", "200x200", "--json"];
@@ -298,6 +312,11 @@ fn cameras_can_stand_anywhere() {
     let plain = ["-o", "a.ppm", "-q", "--yaw", "0", "--pitch", "0", "--distance", "6"];
     render(&case, TORUS, &plain).exits(0);
     render(&case, TORUS, &["-o", "b.ppm", "-q", "--eye", "0,-6,0"]).exits(0);
+    assert_eq!(case.content("a.ppm"), case.content("b.ppm"));
+    // The same place, found from its target.
+    let aside = ["--yaw", "0", "--pitch", "0", "--distance", "4", "--target", "0.5,-2,0.25"];
+    render(&case, TORUS, &[&aside[..], &["-o", "a.ppm", "-q"]].concat()).exits(0);
+    render(&case, TORUS, &["-o", "b.ppm", "-q", "--eye", "0.5,-6,0.25", "--target", "0.5,-2,0.25"]).exits(0);
     assert_eq!(case.content("a.ppm"), case.content("b.ppm"));
     render(&case, TORUS, &["--eye", "0,0,-6", "--up", "0,0,1"]).exits(2).mentions("up direction");
     render(&case, TORUS, &["--eye", "1,1,1", "--yaw", "-3"]).exits(2).mentions("--yaw");

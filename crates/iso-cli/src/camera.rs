@@ -23,6 +23,7 @@ fn view(flags: &CameraFlags, middle: DVec3) -> View {
             yaw: flags.yaw.unwrap_or(yaw),
             pitch: flags.pitch.unwrap_or(pitch),
             distance: flags.distance,
+            target: flags.target,
         },
     }
 }

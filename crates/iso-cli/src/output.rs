@@ -25,6 +25,11 @@ pub(crate) fn exit_between_files(code: u8) -> ! {
     process::exit(code.into())
 }
 
+/// Whether a name stands for standard output.
+pub(crate) fn is_standard_output(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
 /// Where the results of a command go.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Destination {
@@ -38,7 +43,7 @@ impl Destination {
     /// Standard output when `path` is missing or `-`.
     pub(crate) fn new(path: Option<PathBuf>) -> Result<Self, Failure> {
         match path {
-            Some(path) if path.as_os_str() != "-" => OutputFile::new(path).map(Self::File),
+            Some(path) if !is_standard_output(&path) => OutputFile::new(path).map(Self::File),
             _ => Ok(Self::Standard),
         }
     }

@@ -1,18 +1,18 @@
 //! The files that a picture is written to.
 
-use std::io::{self, Write};
+use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use iso_render::{ImageFormat, Layers, Picture, Size, Status};
 
 use crate::failure::Failure;
 use crate::flags::LayerFlags;
-use crate::output::OutputFile;
+use crate::output::{Destination, OutputFile, is_standard_output, to_standard_output};
 use crate::table::{digits, write_row};
 
 /// The files that a picture is written to, all of them writable as far as can be known.
 pub(crate) struct PictureFiles {
-    color: Option<(OutputFile, ImageFormat)>,
+    color: Option<(Destination, ImageFormat)>,
     depth: Option<OutputFile>,
     normals: Option<OutputFile>,
     points: Option<OutputFile>,
@@ -27,6 +27,10 @@ impl PictureFiles {
     /// The same for a picture of a sequence of `count`, whose number goes into all names. An animation is no file of its own.
     pub(crate) fn numbered(flags: &LayerFlags, number: u32, count: u32) -> Result<Self, Failure> {
         let color = color(flags, ANIMATION).filter(|path| !is_animation(path));
+        if color.as_deref().is_some_and(is_standard_output) {
+            let problem = "a sequence has no place in standard output";
+            return Err(Failure::usage(problem, "name a .gif file, or any other for its numbered pictures"));
+        }
         Self::named(color, flags, &|path| with_number(path, number, count))
     }
 
@@ -37,10 +41,10 @@ impl PictureFiles {
         rename: &dyn Fn(&Path) -> PathBuf,
     ) -> Result<Self, Failure> {
         let color = color.map(|path| {
-            let format = ImageFormat::of(&path)?;
+            let format = if is_standard_output(&path) { ImageFormat::PNG } else { ImageFormat::of(&path)? };
             check_size(format, flags.size)?;
             check_transparency(format, flags)?;
-            Ok::<_, Failure>((OutputFile::new(rename(&path))?, format))
+            Ok::<_, Failure>((Destination::new(Some(rename(&path)))?, format))
         });
         let other = |path: &Option<PathBuf>, extension, flag| {
             with_extension(path.as_deref().map(rename), extension, flag)
@@ -68,20 +72,33 @@ impl PictureFiles {
 
     /// The files' names as given, the shaded picture first.
     pub(crate) fn names(&self) -> Vec<String> {
-        self.files().map(|file| file.path().display().to_string()).collect()
+        let is_sent = matches!(self.color, Some((Destination::Standard, _)));
+        let names = self.files().map(|file| file.path().display().to_string());
+        is_sent.then(|| "-".to_owned()).into_iter().chain(names).collect()
     }
 
     /// The files, the shaded picture first.
     fn files(&self) -> impl Iterator<Item = &OutputFile> {
-        let color = self.color.as_ref().map(|(file, _)| file);
+        let color = self.color.as_ref().and_then(|(destination, _)| match destination {
+            Destination::File(file) => Some(file),
+            Destination::Standard => None,
+        });
         let others = [&self.depth, &self.normals, &self.points].into_iter().flatten();
         color.into_iter().chain(others)
     }
 
     /// Writes all files.
     pub(crate) fn write(&self, picture: &Picture) -> Result<(), Failure> {
-        if let Some((file, format)) = &self.color {
-            file.write(|writer| picture.write_color(*format, writer))?;
+        match &self.color {
+            Some((Destination::File(file), format)) => {
+                file.write(|writer| picture.write_color(*format, writer))?;
+            }
+            Some((Destination::Standard, format)) => {
+                let mut bytes = Cursor::new(Vec::new());
+                picture.write_color(*format, &mut bytes)?;
+                to_standard_output(|writer| writer.write_all(bytes.get_ref()))?;
+            }
+            None => {}
         }
         if let Some(file) = &self.depth {
             file.write(|writer| picture.write_depth(writer))?;

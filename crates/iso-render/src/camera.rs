@@ -11,14 +11,16 @@ use crate::Size;
 /// Where the camera stands and what it looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum View {
-    /// On a sphere around the middle of what is to be seen, looking at it.
+    /// On a sphere around what it looks at.
     Orbit {
         /// Degrees around the z axis, counter-clockwise seen from above; 0 stands on the −y side.
         yaw: f64,
         /// Degrees above the xy plane; 90 looks straight down.
         pitch: f64,
-        /// Distance from the middle, in world units; by default as far as the picture needs to show all of it.
+        /// Distance from the target, in world units; by default as far as the picture needs to show all that is to be seen around its middle.
         distance: Option<f64>,
+        /// The point in the middle of the picture; by default the middle of what is to be seen.
+        target: Option<DVec3>,
     },
     /// Anywhere, looking anywhere.
     LookAt {
@@ -48,7 +50,7 @@ pub enum Projection {
 
 impl View {
     /// From the front, a little to the right and above.
-    pub const DEFAULT: Self = Self::Orbit { yaw: 30.0, pitch: 25.0, distance: None };
+    pub const DEFAULT: Self = Self::Orbit { yaw: 30.0, pitch: 25.0, distance: None, target: None };
 }
 
 impl Projection {
@@ -204,12 +206,12 @@ impl Frame<'_> {
         })
     }
 
-    /// How far from the middle an eye must stand that looks along `forward`, so that the sphere is in the picture, or every corner.
-    fn distance(&self, forward: DVec3, up: DVec3) -> f64 {
+    /// How far from the middle an eye must stand that looks along `forward`, so that the sphere is in the picture, or every corner. Parallel
+    /// rays show as much from anywhere, and begin in front of the region where they are so far `off` the middle.
+    fn distance(&self, forward: DVec3, up: DVec3, off: DVec3) -> f64 {
         let Fitted { region, sphere, .. } = self.fitted;
         let Projection::Perspective { fov } = self.projection else {
-            // In front of the region.
-            return region.extent().length() + region.center().distance(self.fitted.center());
+            return region.extent().length() + region.center().distance(self.fitted.center()) + off.length();
         };
         let distance_of_sphere = |sphere: Sphere| {
             // Rays that touch it are off the middle by the angle with this tangent.
@@ -241,7 +243,7 @@ impl Frame<'_> {
 /// The eye, the unit vector forward, and a direction that is up in the picture and not along `forward`.
 fn place(view: View, frame: &Frame<'_>) -> Result<(DVec3, DVec3, DVec3), CameraError> {
     match view {
-        View::Orbit { yaw, pitch, distance } => {
+        View::Orbit { yaw, pitch, distance, target } => {
             checked("the yaw", "finite", yaw, yaw.is_finite())?;
             checked("the pitch", "between -90 and 90 degrees", pitch, pitch.abs() <= 90.0)?;
             // Correctly rounded functions, so that the camera is the same on every machine.
@@ -250,9 +252,12 @@ fn place(view: View, frame: &Frame<'_>) -> Result<(DVec3, DVec3, DVec3), CameraE
             let outward = DVec3::new(cos_pitch * sin_yaw, -cos_pitch * cos_yaw, sin_pitch);
             // Perpendicular to `outward` at every pitch, so that looking straight down has an up direction too.
             let up = DVec3::new(-sin_pitch * sin_yaw, sin_pitch * cos_yaw, cos_pitch);
-            let distance = distance.unwrap_or_else(|| frame.distance(-outward, up));
+            let center = frame.fitted.center();
+            let target = target.unwrap_or(center);
+            checked("the target", "finite", target.length(), target.is_finite())?;
+            let distance = distance.unwrap_or_else(|| frame.distance(-outward, up, target - center));
             checked("the distance", "positive", distance, distance > 0.0 && distance.is_finite())?;
-            Ok((frame.fitted.center() + distance * outward, -outward, up))
+            Ok((target + distance * outward, -outward, up))
         }
         View::LookAt { eye, target, up } => {
             let all = eye + target + up;
@@ -282,7 +287,7 @@ mod tests {
     }
 
     fn orbit(yaw: f64, pitch: f64) -> View {
-        View::Orbit { yaw, pitch, distance: None }
+        View::Orbit { yaw, pitch, distance: None, target: None }
     }
 
     #[test]
@@ -292,6 +297,31 @@ mod tests {
         assert!((camera.forward() - DVec3::Y).length() < CLOSE);
         assert!((camera.right() - DVec3::X).length() < CLOSE);
         assert!((camera.up() - DVec3::Z).length() < CLOSE);
+    }
+
+    #[test]
+    fn cameras_orbit_their_target() {
+        let size = Size::new(2, 2).unwrap();
+        let target = DVec3::new(2.5, -1.0, 0.5);
+        for projection in [Projection::DEFAULT, Projection::Orthographic { view_width: None }] {
+            for distance in [None, Some(7.0)] {
+                let view = |target| View::Orbit { yaw: 20.0, pitch: 35.0, distance, target };
+                let [there, usual] = [Some(target), None]
+                    .map(|target| Camera::new(view(target), projection, &region(), size).unwrap());
+                let from_there = |camera: &Camera, from: DVec3| camera.raster.ray(0.0, 0.0).origin - from;
+                let eye = from_there(&there, target);
+                assert!(eye.cross(there.forward()).length() < CLOSE && eye.dot(there.forward()) < 0.0);
+                assert_eq!(there.forward(), usual.forward());
+                // As large as in the picture of the middle.
+                let scales = [&there, &usual].map(|camera| camera.ray(0, 0).origin - camera.ray(1, 0).origin);
+                assert!((scales[0] - scales[1]).length() < CLOSE);
+                if matches!(projection, Projection::Perspective { .. }) {
+                    assert!((eye - from_there(&usual, region().center())).length() < CLOSE);
+                } else if distance.is_none() {
+                    assert!(eye.length() > region().extent().length());
+                }
+            }
+        }
     }
 
     #[test]

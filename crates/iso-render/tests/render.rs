@@ -56,7 +56,7 @@ fn draw_over(picture: &mut Picture, stop: &Stop, threads: usize, last: u64) {
     let program = sphere();
     let surface = Surface::new(Arc::new(Interpreter), program).stopped_by(stop.clone());
     let region = Region::new(DVec3::splat(-1.5), DVec3::splat(1.5)).unwrap();
-    let view = View::Orbit { yaw: 0.0, pitch: 0.0, distance: Some(5.0) };
+    let view = View::Orbit { yaw: 0.0, pitch: 0.0, distance: Some(5.0), target: None };
     let projection = Projection::Orthographic { view_width: Some(0.05 * f64::from(size.width())) };
     let camera = Camera::new(view, projection, &region, size).unwrap();
     let plan = Plan::new(&Wanted {

@@ -21,7 +21,7 @@ pub(crate) struct CameraFlags {
     #[arg(long, value_name = "DEGREES", value_parser = values::finite, conflicts_with = "ortho")]
     pub(crate) fov: Option<f64>,
 
-    /// The distance from the middle of what is seen
+    /// The distance from the target
     #[arg(long, value_name = "LENGTH", value_parser = values::positive, conflicts_with = "eye")]
     pub(crate) distance: Option<f64>,
 
@@ -33,13 +33,12 @@ pub(crate) struct CameraFlags {
     #[arg(long, value_name = "LENGTH", value_parser = values::positive, requires = "ortho")]
     pub(crate) view_width: Option<f64>,
 
-    /// Stand here instead of on a sphere around what is seen
+    /// Stand here instead of on a sphere around the target
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     pub(crate) eye: Option<DVec3>,
 
     /// Look there [default: the middle of what is seen]
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
-    #[arg(requires = "eye")]
     pub(crate) target: Option<DVec3>,
 
     /// Which direction is up in the picture [default: 0,0,1]

@@ -51,7 +51,8 @@ pub(crate) struct PictureFlags {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct LayerFlags {
-    /// The picture; its extension says the format: png, jpg, webp, tif, bmp, ppm, qoi or gif [default: iso.png, if nothing else is written]
+    /// The picture; its extension says the format: png, jpg, webp, tif, bmp, ppm, qoi or gif; `-` is standard output, as png [default:
+    /// iso.png, if nothing else is written]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
 

@@ -14,6 +14,9 @@ use crate::{EncodeError, Picture};
 pub struct ImageFormat(image::ImageFormat);
 
 impl ImageFormat {
+    /// The usual one: exact, and small.
+    pub const PNG: Self = Self(image::ImageFormat::Png);
+
     /// The file name extensions that can be written.
     pub const EXTENSIONS: [&'static str; 10] =
         ["png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp", "ppm", "qoi", "gif"];

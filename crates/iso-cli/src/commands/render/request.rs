@@ -17,7 +17,7 @@ use crate::flags::RenderFlags;
 use crate::interruption::Interruption;
 use crate::method::fitted;
 use crate::notes::Drawn;
-use crate::output::OutputFile;
+use crate::output::{OutputFile, is_standard_output};
 use crate::pictures::animation;
 use crate::plan::{PlanReport, kernels_compiled};
 use crate::progress::Progress;
@@ -61,6 +61,10 @@ impl Request {
     pub(super) fn resolve(flags: RenderFlags) -> Result<Self, Failure> {
         let interruption = Interruption::new(&flags.picture.limit);
         let picture = &flags.picture;
+        if flags.summary.json && picture.output.output.as_deref().is_some_and(is_standard_output) {
+            let problem = "--json and the picture both go to standard output";
+            return Err(Failure::usage(problem, "name a file for the picture, or leave out --json"));
+        }
         let smoothing = picture.output.smooth;
         let drawn = smoothing
             .drawn(picture.output.size)
