@@ -8,10 +8,9 @@ use iso_grid::{Certified, Kernel, Outcome, Raster, Region, Surface, Tile, Tracer
 use iso_jit::Jit;
 
 /// A quartic inside a ball: in most places one of both decides. To the second a term is added that has no affine form, so that it is
-/// enclosed over boxes.
+/// enclosed over boxes, and its ball has no squares in common with it.
 const SMOOTH: &str = "max(x^4 + y^4 + z^4 - x^2 - y^2 - z^2 + 0.3, x^2 + y^2 + z^2 - 1.2)";
-const WITHOUT_FORM: &str =
-    "max(x^4 + y^4 + z^4 - x^2 - y^2 - z^2 + 0.3 + 0.01atan(x), x^2 + y^2 + z^2 - 1.2)";
+const WITHOUT_FORM: &str = "max(x^4 + y^4 + z^4 - x^2 - y^2 - z^2 + 0.3 + 0.01atan(x), (x - 0.1)^2 + (y + 0.1)^2 + (z - 0.2)^2 - 1.2)";
 
 /// Columns and rows of the picture.
 const SIDE: usize = 64;

@@ -5,7 +5,7 @@ use crate::harness::Case;
 const PAPER: &str = "(x^2+y^2-1)^2 + 4z^2 + 0.5x = 0.2";
 const SECTIONS: [&str; 6] = ["tree", "program", "simplified", "gradient", "clif", "assembly"];
 
-/// A heart is a difference of cubes.
+/// A heart is a difference of cubes, and a quartic a square of a square.
 #[test]
 fn a_function_with_the_same_signs_is_shown_where_rays_are_followed_by_one() {
     let case = Case::new();
@@ -16,6 +16,8 @@ fn a_function_with_the_same_signs_is_shown_where_rays_are_followed_by_one() {
     };
     let json = explained(heart, &[]);
     assert!(json["signs"]["text"].as_str().unwrap().contains("cbrt"));
+    let square = explained("x^4 - 5x^2 + y^2 + z^2 = 1", &[]);
+    assert!(square["signs"]["text"].as_str().unwrap().contains("- 2.5"), "{square}");
     assert_eq!(json["signs"]["size"], json["plan"]["operations"]["by_signs"]);
     // Boxes are fitted by signs whatever the method is.
     let kernels = explained(heart, &["--method", "grid"])["plan"]["kernels"].as_array().unwrap().clone();

@@ -132,7 +132,7 @@ impl PlanReport {
         if let Some(operations) = by_signs {
             writeln!(
                 writer,
-                "    rays are followed by {operations} operations with its signs: cubes are told by what is cubed"
+                "    rays are followed by {operations} operations with its signs, told by what is cubed and by lower polynomials"
             )?;
         }
         for (title, lines) in [

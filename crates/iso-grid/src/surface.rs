@@ -79,10 +79,10 @@ impl Surface {
     }
 
     /// The same surface for methods that ask of F − C no more than its sign and where it is zero: that of
-    /// [another function](Program::without_cubes) with the same signs if that has slopes where F − C has none, else this one.
+    /// [another function](Program::told_by_signs) with the same signs if that is easier to follow, else this one.
     pub fn by_signs(&self) -> &Self {
         let find = || {
-            let value = self.value.without_cubes();
+            let value = self.value.told_by_signs();
             let engine = Arc::clone(&self.engine);
             (value != self.value).then(|| Self {
                 many: self.many.clone(),

@@ -54,10 +54,8 @@ impl Product {
 }
 
 impl Program {
-    /// A program whose output is negative, zero or positive, as a real function, wherever that of this one is, and undefined wherever it is, with
-    /// differences of cubes told by their roots: where F is one, or a minimum or maximum of such. Where the
-    /// two are zero their gradients have the same direction, if both have any.
-    pub fn without_cubes(&self) -> Self {
+    /// A program with the same signs and differences of cubes told by their roots: where F is one, or a minimum or maximum of such.
+    pub(super) fn without_cubes(&self) -> Self {
         let are_signs = self.asked_for_signs();
         // Nothing is built of the many programs that have none.
         let has_cubes = |((id, _), is_sign): ((NodeId, &Node), &bool)| *is_sign && self.cubes(id).is_some();

@@ -1,5 +1,6 @@
 //! Programs: hash-consed, straight-line descriptions of what is to be evaluated.
 
+mod composed;
 mod cubes;
 mod display;
 mod extreme;
@@ -189,6 +190,13 @@ impl Program {
     /// The argument of F along `axis`.
     pub fn variable(&mut self, axis: Axis) -> NodeId {
         self.intern(Node::Variable(axis.into()))
+    }
+
+    /// A program whose output is negative, zero or positive, as a real function, wherever that of this one is, and undefined wherever it is, but
+    /// easier to follow to its zeros: differences of cubes are told by what is cubed, and polynomials as compositions of lower ones. Where the two
+    /// are zero their gradients have the same direction, if both have any.
+    pub fn told_by_signs(&self) -> Self {
+        self.without_cubes().composed()
     }
 
     /// A constant.
