@@ -262,17 +262,20 @@ fn colours_that_cannot_be_drawn_are_refused() {
     for (flags, expected) in [
         (["--colors", "redd"], "expected a colour such as `orange` or `#3a7bd5`, found `redd`"),
         (["--colors", "red,green,blue"], "expected 1 colour or 2, found 3"),
+        (["--colors", "add"], "expected a colour such as `orange` or `#3a7bd5`, found `add`"),
         (["--colors", "transparent"], "`transparent` is transparent; only --background none is"),
         (["--background", "red,none"], "expected a colour such as `orange` or `#3a7bd5`, found `none`"),
     ] {
         render(&case, SPHERE, &flags).exits(2).mentions(expected);
     }
-    for name in ["a.jpg", "a.gif", "a.bmp", "a.ppm"] {
+    let run = render(&case, SPHERE, &["--colors", "red", "--depth", "a.exr"]);
+    run.exits(2).mentions("colours are given, but no shaded picture is written");
+    for name in ["a.jpg", "a.gif", "a.bmp", "a.tif"] {
         let run = render(&case, SPHERE, &["--background", "none", "-o", name]);
         run.exits(2).mentions("this format has no transparency");
     }
     let run = render(&case, SPHERE, &["--background", "none", "--turntable"]);
-    run.exits(2).mentions("choose a .png, .webp, .tif or .qoi file");
+    run.exits(2).mentions("choose a .png, .webp or .qoi file");
     assert!(case.names().is_empty());
 }
 

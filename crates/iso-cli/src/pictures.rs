@@ -40,6 +40,10 @@ impl PictureFiles {
         flags: &LayerFlags,
         rename: &dyn Fn(&Path) -> PathBuf,
     ) -> Result<Self, Failure> {
+        if self::color(flags, STILL).is_none() && flags.look.is_given() {
+            let problem = "colours are given, but no shaded picture is written";
+            return Err(Failure::usage(problem, "name one with -o, or leave them out"));
+        }
         let color = color.map(|path| {
             let format = if is_standard_output(&path) { ImageFormat::PNG } else { ImageFormat::of(&path)? };
             check_size(format, flags.size)?;
@@ -129,7 +133,7 @@ fn check_transparency(format: ImageFormat, flags: &LayerFlags) -> Result<(), Fai
         return Ok(());
     }
     let problem = "--background none is given, but this format has no transparency";
-    Err(Failure::usage(problem, "choose a .png, .webp, .tif or .qoi file"))
+    Err(Failure::usage(problem, "choose a .png, .webp or .qoi file"))
 }
 
 /// What must be kept of a picture to write the files that `flags` name.

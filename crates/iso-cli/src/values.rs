@@ -88,9 +88,11 @@ pub(crate) fn colors(text: &str) -> Result<[[u8; 3]; 2], String> {
 
 fn color(text: &str) -> Result<[u8; 3], String> {
     let text = text.trim();
-    let [red, green, blue, alpha] = csscolorparser::parse(text)
-        .map_err(|_| format!("expected a colour such as `orange` or `#3a7bd5`, found `{text}`"))?
-        .to_rgba8();
+    let unknown = || format!("expected a colour such as `orange` or `#3a7bd5`, found `{text}`");
+    // Digits alone would be one, too.
+    let is_bare = text.chars().all(|letter| letter.is_ascii_hexdigit());
+    let found = csscolorparser::parse(text).ok().filter(|_| !is_bare).ok_or_else(unknown)?;
+    let [red, green, blue, alpha] = found.to_rgba8();
     let is_opaque = alpha == u8::MAX;
     is_opaque
         .then_some([red, green, blue])

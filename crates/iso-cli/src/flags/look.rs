@@ -30,6 +30,10 @@ impl LookFlags {
         Look { outside, inside, background, shows_statuses: self.show_status }
     }
 
+    pub(crate) fn is_given(&self) -> bool {
+        self.colors.is_some() || self.background.is_some()
+    }
+
     pub(crate) fn is_transparent(&self) -> bool {
         self.background == Some(Background::Transparent)
     }

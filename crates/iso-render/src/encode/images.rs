@@ -39,8 +39,8 @@ impl ImageFormat {
 
     /// Whether pictures keep a [transparent background](crate::Background::Transparent).
     pub fn has_transparency(self) -> bool {
-        use image::ImageFormat::{Png, Qoi, Tiff, WebP};
-        matches!(self.0, Png | Qoi | Tiff | WebP)
+        use image::ImageFormat::{Png, Qoi, WebP};
+        matches!(self.0, Png | Qoi | WebP)
     }
 
     /// The most columns and rows that a file holds.

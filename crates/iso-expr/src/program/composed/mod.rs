@@ -13,8 +13,14 @@ use polynomial::{Polynomial, product, quotient, sum};
 /// Sums of more terms stay as they are.
 const MOST_TERMS: usize = 128;
 
+/// So do those that would take constants so many times larger than all of their coefficients: what is near them is rounded that much more.
+const GROWTH: f64 = 256.0;
+
 /// Higher powers are no terms of polynomials.
 const HIGHEST: u32 = 64;
+
+/// No more than one in so many operations may be added to a program.
+const ONE_IN: usize = 8;
 
 /// A sum of numbers and of polynomials without constants, each of one node.
 #[derive(Default)]
@@ -48,18 +54,26 @@ impl Sum {
 
     /// The same sum with what each node goes through, step by step; `None` where that is but one step for each.
     fn composed(mut self) -> Option<Composed> {
-        let mut terms = Vec::new();
+        let (mut terms, mut size_before, mut shifts) = (Vec::new(), size(&self.constants), 0.0);
         for (base, coefficients) in std::mem::take(&mut self.polynomials) {
             // What cancels may be undefined somewhere.
-            let mut steps = Polynomial::new(coefficients)?.steps();
-            if let Some(last) = steps.last_mut() {
+            let polynomial = Polynomial::new(coefficients)?;
+            size_before += polynomial.size();
+            let mut steps = polynomial.steps();
+            if let Some((last, inner)) = steps.split_last_mut() {
+                shifts += inner.iter().map(|step| step.constant().abs()).sum::<f64>();
                 self.add_constant(last.take_constant());
             }
             terms.push((base, steps));
         }
         let is_told_otherwise = terms.iter().any(|(_, steps)| steps.len() > 1);
-        is_told_otherwise.then_some(Composed { terms, constants: self.constants })
+        let has_grown = shifts + size(&self.constants) > GROWTH * size_before;
+        (is_told_otherwise && !has_grown).then_some(Composed { terms, constants: self.constants })
     }
+}
+
+fn size(numbers: &[f64]) -> f64 {
+    numbers.iter().map(|number| number.abs()).sum()
 }
 
 /// A sum of numbers and of what becomes of nodes that go through polynomials one after the other.
@@ -99,7 +113,10 @@ impl Program {
             });
         }
         program.outputs = self.outputs.iter().map(|output| places[output.index()]).collect();
-        program.simplified()
+        let composed = program.simplified();
+        // What a sum is multiplied by is distributed over its terms.
+        let pays = ONE_IN * composed.operations() <= (ONE_IN + 1) * (self.operations() + 1);
+        if pays { composed } else { self.clone() }
     }
 
     /// How many nodes and outputs read each node.
@@ -128,6 +145,8 @@ impl Program {
             Node::Constant(constant) if constant.is_exact() => Some(constant.value()),
             _ => None,
         };
+        // What is multiplied by zero may be undefined somewhere.
+        let factor = |id: NodeId| number(id).filter(|factor| *factor != 0.0);
         let unknown = Part::Power(id, 1);
         match self.node(id) {
             Node::Constant(_) => number(id).map_or(unknown, Part::Constant),
@@ -135,13 +154,13 @@ impl Program {
             Node::Apply(Operation::Subtract, [a, b, _]) => Part::Sum(vec![(a, 1.0), (b, -1.0)]),
             Node::Apply(Operation::Negate, [a, ..]) => Part::Sum(vec![(a, -1.0)]),
             Node::Apply(Operation::Multiply, [a, b, _]) if a == b => Part::Power(a, 2),
-            Node::Apply(Operation::Multiply, [a, b, _]) => match (number(a), number(b)) {
+            Node::Apply(Operation::Multiply, [a, b, _]) => match (factor(a), factor(b)) {
                 (Some(factor), _) => Part::Sum(vec![(b, factor)]),
                 (_, Some(factor)) => Part::Sum(vec![(a, factor)]),
                 _ => unknown,
             },
             Node::Apply(Operation::Divide, [a, b, _]) => {
-                let factor = number(b).and_then(|divisor| quotient(1.0, divisor));
+                let factor = factor(b).and_then(|divisor| quotient(1.0, divisor));
                 factor.map_or(unknown, |factor| Part::Sum(vec![(a, factor)]))
             }
             Node::Apply(Operation::IntegerPower, [base, exponent, _]) => match self.exponent(exponent) {
@@ -246,9 +265,12 @@ mod tests {
             "(sin(x) + 2y)^2/4 - (sin(x) + 2y) + 3sqrt(z^4 + 2z^2 + 2) - 7 = 0.3",
             "-(x^2 + 6x) - 3(y^2 - y)/2 + x*y*z - pi",
             "min(x^2 + x + y^3, exp(z^2 - 3z)) - max(x, y^4 + y^2)^2",
+            "x^2 + 3x + y = 0*sqrt(9 - x^2 - y^2 - z^2)",
+            "x^4 + 2x^3 + x^2 + y^2 + z^2 - 1",
         ] {
             let (whole, composed) = (read(formula), read(formula).composed());
             assert_ne!(whole, composed, "{formula}");
+            assert_eq!(composed.composed(), composed, "{formula}");
             for _ in 0..200 {
                 let point = [(); 3].map(|()| random.between(-1.5, 1.5));
                 // Those that call functions are compared by their enclosures.
@@ -284,7 +306,14 @@ mod tests {
         let width =
             |program: &Program| program.enclosures(sides)[program.outputs()[0].index()].interval.width();
         assert!(width(&composed) < 0.01 * width(&whole), "{} and {}", width(&composed), width(&whole));
-        assert_eq!(composed.composed(), composed);
+    }
+
+    #[test]
+    fn compositions_are_undefined_where_the_function_is() {
+        let composed = read("x^2 + 3x + y = 0*sqrt(9 - x^2 - y^2 - z^2)").composed();
+        let [inside, outside] = [[1.0, 1.0, 1.0], [3.0, 1.0, 0.0]].map(|point| composed.evaluate(point)[0]);
+        assert_eq!(inside, 5.0);
+        assert!(outside.is_nan());
     }
 
     #[test]
@@ -300,6 +329,12 @@ mod tests {
             // Coefficients would be rounded.
             "0.3x^2 + 0.1x + y",
             "sin(x) + x*y",
+            "x^8 + 4x^6 + y^2 - 1",
+            // What is far away would be rounded.
+            "x^2 + 65536x + 65536y + z",
+            "x^2 + 2251799813685248x + 2251799813685248y",
+            // A factor would be written for each of many terms.
+            "0.3(sin(x) + sin(2x) + sin(3x) + sin(4x) + sin(5x) + sin(6x) + sin(7x) + sin(8x)) + y^2 + 2y",
         ] {
             assert_eq!(read(formula).composed(), read(formula), "{formula}");
         }

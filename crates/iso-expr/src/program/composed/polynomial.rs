@@ -12,6 +12,21 @@ impl Polynomial {
         Some(Self(coefficients))
     }
 
+    /// How many powers occur, the constant aside.
+    fn powers(&self) -> usize {
+        self.terms().filter(|(power, _)| *power > 0).count()
+    }
+
+    /// How large its coefficients are together.
+    pub(super) fn size(&self) -> f64 {
+        self.0.iter().map(|coefficient| coefficient.abs()).sum()
+    }
+
+    /// Its constant.
+    pub(super) fn constant(&self) -> f64 {
+        self.0[0]
+    }
+
     /// Its constant, which is taken away.
     pub(super) fn take_constant(&mut self) -> f64 {
         std::mem::take(&mut self.0[0])
@@ -29,12 +44,12 @@ impl Polynomial {
     /// Polynomials that are this one when each is applied to what the one before it gives, all but the last one of the least degrees: this one
     /// alone if it is no such composition.
     ///
-    /// A constant goes with each of them so that what it is applied to is as even as can be: a square is completed, and Chebyshev's
-    /// polynomials become those of lower degrees that they are composed of.
+    /// A constant goes with each of them where that leaves fewer terms: a square is completed, and Chebyshev's polynomials become those of lower
+    /// degrees that they are composed of.
     pub(super) fn steps(self) -> Vec<Self> {
         let (mut steps, mut rest) = (Vec::new(), self.clone());
         while let Some([inner, outer]) = rest.split() {
-            steps.push(inner);
+            steps.extend(inner.steps());
             rest = outer;
         }
         // Powers of powers are powers.
@@ -55,7 +70,9 @@ impl Polynomial {
         (2..degree).filter(|inner| degree.is_multiple_of(*inner)).find_map(|inner_degree| {
             let inner = self.inner(inner_degree)?;
             let outer = self.in_powers_of(&inner)?;
-            self.balanced(inner.clone(), outer.clone()).or(Some([inner, outer]))
+            let balanced = self.balanced(inner.clone(), outer.clone());
+            // Where it leaves no fewer terms, they cancel.
+            balanced.filter(|[_, shifted]| shifted.powers() < outer.powers()).or(Some([inner, outer]))
         })
     }
 
@@ -80,7 +97,9 @@ impl Polynomial {
         loop {
             // By long division the rest becomes quotient·h + remainder, of which the latter is to be a number.
             for place in (degree..rest.len()).rev() {
-                for (below, coefficient) in inner.0.iter().enumerate().take(degree) {
+                let below =
+                    inner.0.iter().enumerate().take(degree).filter(|(_, coefficient)| **coefficient != 0.0);
+                for (below, coefficient) in below {
                     let place = place - degree + below;
                     rest[place] = sum(rest[place], -product(rest[place + degree - below], *coefficient)?)?;
                 }
@@ -118,10 +137,10 @@ impl Polynomial {
 
     fn times(&self, other: &Self) -> Option<Self> {
         let mut coefficients = vec![0.0; self.degree() + other.degree() + 1];
-        for (power, a) in self.0.iter().enumerate() {
-            for (more, b) in other.0.iter().enumerate() {
+        for (power, a) in self.terms() {
+            for (more, b) in other.terms() {
                 let coefficient = &mut coefficients[power + more];
-                *coefficient = sum(*coefficient, product(*a, *b)?)?;
+                *coefficient = sum(*coefficient, product(a, b)?)?;
             }
         }
         Self::new(coefficients)
@@ -195,6 +214,8 @@ mod tests {
         );
         let quartic = polynomial(&[0.0, 0.0, -5.0, 0.0, 1.0]).steps();
         assert_eq!(quartic, [polynomial(&[-2.5, 0.0, 1.0]), polynomial(&[-6.25, 0.0, 1.0])]);
+        let inside = [&[0.5, 1.0][..], &[-0.25, 0.0, 1.0], &[0.0, 0.0, 1.0]].map(polynomial);
+        assert_eq!(polynomial(&[0.0, 0.0, 1.0, 2.0, 1.0]).steps(), inside);
     }
 
     #[test]
@@ -220,6 +241,9 @@ mod tests {
             &[0.0, 1.0, 1.0, 1.0][..],
             &[0.0, 1.0, 0.0, 0.0, 1.0],
             &[1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+            // Powers of powers.
+            &[0.0, 0.0, 0.0, 0.0, 3.0, 0.0, 1.0],
+            &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -4.0, 0.0, 1.0],
             // Already a square.
             &[0.3, 0.0, 2.0],
             // Coefficients would be rounded.
