@@ -72,6 +72,7 @@ impl Sum {
     }
 }
 
+/// How large some numbers are together.
 fn size(numbers: &[f64]) -> f64 {
     numbers.iter().map(|number| number.abs()).sum()
 }
@@ -96,11 +97,10 @@ impl Program {
     pub(super) fn composed(&self) -> Self {
         let readers = self.readers();
         let is_outer = self.outer_sums(&readers);
-        let sums = self
-            .iter()
-            .zip(is_outer)
-            .map(|((id, _), is_outer)| if is_outer { self.sum_at(id, &readers)?.composed() } else { None });
-        let sums: Vec<_> = sums.collect();
+        let composed = |id| self.sum_at(id, &readers)?.composed();
+        let outer = self.iter().zip(is_outer);
+        let sums: Vec<_> =
+            outer.map(|((id, _), is_outer)| is_outer.then(|| composed(id)).flatten()).collect();
         if sums.iter().all(Option::is_none) {
             return self.clone();
         }
