@@ -90,6 +90,16 @@ pub struct Layers {
 }
 
 impl Layers {
+    /// Everything.
+    pub const ALL: Self = Self {
+        color: true,
+        coverage: true,
+        depth: true,
+        normals: true,
+        points: true,
+        statuses: true,
+        outcomes: true,
+    };
     /// The shaded picture alone.
     pub const COLOR: Self = Self {
         color: true,

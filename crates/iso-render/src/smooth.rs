@@ -31,8 +31,8 @@ impl Smoothing {
 
     /// Turns a picture that was drawn in the size of [`Smoothing::drawn`] into the finished one.
     ///
-    /// Only its colours and what covers the background are averaged, for distances, normals, points and statuses have no average: those layers go. The
-    /// counts stay those of the drawn pixels.
+    /// Only its colours and what covers the background are averaged, for distances, normals, points and statuses have no average: those
+    /// layers go. The counts stay those of the drawn pixels.
     pub fn finish(self, picture: &mut Picture) {
         if self == Self::NONE {
             return;

@@ -11,15 +11,6 @@ use iso_render::{
 };
 
 const PAPER: &str = "(x^2+y^2-1)^2 + 4z^2 + 0.5x = 0.2";
-const ALL: Layers = Layers {
-    color: true,
-    coverage: true,
-    depth: true,
-    normals: true,
-    points: true,
-    statuses: true,
-    outcomes: true,
-};
 const DEPTH: Layers = Layers { color: false, depth: true, ..Layers::COLOR };
 const ORTHOGRAPHIC: Projection = Projection::Orthographic { view_width: None };
 
@@ -83,7 +74,7 @@ fn bits_of_normals(normals: &[Vec3]) -> Vec<[u32; 3]> {
 fn the_kernels_compiled_are_the_planned_ones() {
     let program = program(PAPER);
     for method in methods() {
-        for layers in [ALL, Layers::COLOR, DEPTH, Layers { normals: true, ..DEPTH }] {
+        for layers in [Layers::ALL, Layers::COLOR, DEPTH, Layers { normals: true, ..DEPTH }] {
             let plan = Plan::new(&wanted(&program, method, layers));
             assert_eq!(draw(&program, &plan).1, planned(&plan), "{method:?} {layers:?}");
         }
@@ -96,7 +87,7 @@ fn nothing_is_compiled_ahead_of_large_formulas_of_which_less_is_left_in_places()
     let union = (0..30).map(ball).reduce(|union, ball| format!("min({union}, {ball})")).unwrap();
     let program = program(&union);
     for method in methods() {
-        for layers in [ALL, DEPTH] {
+        for layers in [Layers::ALL, DEPTH] {
             let plan = Plan::new(&wanted(&program, method, layers));
             let (_, compiled) = draw(&program, &plan);
             assert_eq!(compiled, planned(&plan), "{method:?}");
@@ -104,7 +95,7 @@ fn nothing_is_compiled_ahead_of_large_formulas_of_which_less_is_left_in_places()
         }
     }
     let certified = Method::Certified { accuracy: Certified::ACCURACY };
-    let fitted = Plan::new(&Wanted { box_is_given: false, ..wanted(&program, certified, ALL) });
+    let fitted = Plan::new(&Wanted { box_is_given: false, ..wanted(&program, certified, Layers::ALL) });
     assert_eq!(planned(&fitted), [Kernel::ValueEnclosures], "a box is fitted by it");
 }
 
@@ -112,7 +103,7 @@ fn nothing_is_compiled_ahead_of_large_formulas_of_which_less_is_left_in_places()
 fn layers_left_out_are_not_computed_and_change_no_other() {
     let program = program(PAPER);
     for method in methods() {
-        let (all, _) = draw(&program, &Plan::new(&wanted(&program, method, ALL)));
+        let (all, _) = draw(&program, &Plan::new(&wanted(&program, method, Layers::ALL)));
         assert!(all.counters.gradient_evaluations > 0);
         let every_choice = (0..128).map(|choice| {
             let chosen = |layer: u32| choice >> layer & 1 == 1;
@@ -172,8 +163,8 @@ fn an_argument_that_is_not_taken_is_not_cut_along() {
     assert!(full.takes(Axis::Z), "or the test says nothing");
     let [_, sampling @ ..] = methods();
     for method in sampling {
-        let plans =
-            [&flat, &full].map(|program| Plan::new(&wanted(program, method, Layers { color: false, ..ALL })));
+        let plans = [&flat, &full]
+            .map(|program| Plan::new(&wanted(program, method, Layers { color: false, ..Layers::ALL })));
         assert_eq!(plans.each_ref().map(|plan| plan.arguments()[2].taken), [false, true]);
         let [(picture, _), (other, _)] =
             [(&flat, &plans[0]), (&full, &plans[1])].map(|(program, plan)| draw(program, plan));
@@ -203,9 +194,11 @@ fn parallel_rays_take_slopes_along_their_direction() {
     let program = program("1/(x^2 + y^2 + z^2) + 1/((x - 1)^2 + y^2 + z^2) = 4");
     let surface = Surface::new(Arc::new(Interpreter), program.clone());
     for method in methods() {
-        let parallel = Plan::new(&wanted(&program, method, ALL));
-        let spreading =
-            Plan::new(&Wanted { projection: Some(Projection::DEFAULT), ..wanted(&program, method, ALL) });
+        let parallel = Plan::new(&wanted(&program, method, Layers::ALL));
+        let spreading = Plan::new(&Wanted {
+            projection: Some(Projection::DEFAULT),
+            ..wanted(&program, method, Layers::ALL)
+        });
         assert_eq!(folded(&spreading), [Given::Level]);
         let [parallel_kernels, spreading_kernels] = [&parallel, &spreading].map(planned);
         if method == Method::CERTIFIED {
@@ -224,7 +217,7 @@ fn parallel_rays_take_slopes_along_their_direction() {
 #[test]
 fn parameters_are_folded_where_there_are_some() {
     let program = program(PAPER);
-    let plain = wanted(&program, Method::CERTIFIED, ALL);
+    let plain = wanted(&program, Method::CERTIFIED, Layers::ALL);
     assert_eq!(folded(&Plan::new(&plain)), [Given::Level, Given::Direction]);
     let with_parameters = Plan::new(&Wanted { has_parameters: true, ..plain });
     assert_eq!(folded(&with_parameters), [Given::Level, Given::Parameters, Given::Direction]);

@@ -10,16 +10,6 @@ use iso_render::{
     View, Wanted, render_over,
 };
 
-const ALL: Layers = Layers {
-    color: true,
-    coverage: true,
-    depth: true,
-    normals: true,
-    points: true,
-    statuses: true,
-    outcomes: true,
-};
-
 /// x² + y² + z² − 1
 fn sphere() -> Program {
     let mut program = Program::new();
@@ -65,7 +55,7 @@ fn draw_over(picture: &mut Picture, stop: &Stop, threads: usize, last: u64) {
         has_parameters: false,
         projection: Some(projection),
         box_is_given: true,
-        layers: ALL,
+        layers: Layers::ALL,
         smoothing: Smoothing::NONE,
     });
     let tracer = plan.tracer(&surface, region).unwrap();

@@ -3,6 +3,7 @@
 mod composed;
 mod cubes;
 mod display;
+mod exact;
 mod extreme;
 mod forms;
 mod gradient;

@@ -6,9 +6,10 @@
 
 mod polynomial;
 
+use super::exact::{product, quotient, sum};
 use super::{Node, NodeId, Program};
 use crate::Operation;
-use polynomial::{Polynomial, product, quotient, sum};
+use polynomial::Polynomial;
 
 /// Sums of more terms stay as they are.
 const MOST_TERMS: usize = 128;
@@ -88,7 +89,7 @@ enum Part {
     Constant(f64),
     Power(NodeId, u32),
     /// A sum of multiples.
-    Sum(Vec<(NodeId, f64)>),
+    Sum([Option<(NodeId, f64)>; 2]),
 }
 
 impl Program {
@@ -129,12 +130,13 @@ impl Program {
 
     /// For each node whether it is a sum, and no part of another one.
     fn outer_sums(&self, readers: &[u32]) -> Vec<bool> {
-        let parts: Vec<_> = self.iter().map(|(id, _)| self.part(id)).collect();
-        let mut are_outer: Vec<_> = parts.iter().map(|part| matches!(part, Part::Sum(_))).collect();
-        for part in &parts {
-            if let Part::Sum(parts) = part {
-                let inner = parts.iter().map(|(part, _)| part.index()).filter(|part| readers[*part] == 1);
-                inner.for_each(|part| are_outer[part] = false);
+        let mut are_outer = vec![false; self.nodes.len()];
+        for (id, _) in self.iter() {
+            // Parts stand before their sums.
+            if let Part::Sum(parts) = self.part(id) {
+                are_outer[id.index()] = true;
+                let inner = parts.into_iter().flatten().map(|(part, _)| part.index());
+                inner.filter(|part| readers[*part] == 1).for_each(|part| are_outer[part] = false);
             }
         }
         are_outer
@@ -150,18 +152,18 @@ impl Program {
         let unknown = Part::Power(id, 1);
         match self.node(id) {
             Node::Constant(_) => number(id).map_or(unknown, Part::Constant),
-            Node::Apply(Operation::Add, [a, b, _]) => Part::Sum(vec![(a, 1.0), (b, 1.0)]),
-            Node::Apply(Operation::Subtract, [a, b, _]) => Part::Sum(vec![(a, 1.0), (b, -1.0)]),
-            Node::Apply(Operation::Negate, [a, ..]) => Part::Sum(vec![(a, -1.0)]),
+            Node::Apply(Operation::Add, [a, b, _]) => Part::Sum([Some((a, 1.0)), Some((b, 1.0))]),
+            Node::Apply(Operation::Subtract, [a, b, _]) => Part::Sum([Some((a, 1.0)), Some((b, -1.0))]),
+            Node::Apply(Operation::Negate, [a, ..]) => Part::Sum([Some((a, -1.0)), None]),
             Node::Apply(Operation::Multiply, [a, b, _]) if a == b => Part::Power(a, 2),
             Node::Apply(Operation::Multiply, [a, b, _]) => match (factor(a), factor(b)) {
-                (Some(factor), _) => Part::Sum(vec![(b, factor)]),
-                (_, Some(factor)) => Part::Sum(vec![(a, factor)]),
+                (Some(factor), _) => Part::Sum([Some((b, factor)), None]),
+                (_, Some(factor)) => Part::Sum([Some((a, factor)), None]),
                 _ => unknown,
             },
             Node::Apply(Operation::Divide, [a, b, _]) => {
                 let factor = factor(b).and_then(|divisor| quotient(1.0, divisor));
-                factor.map_or(unknown, |factor| Part::Sum(vec![(a, factor)]))
+                factor.map_or(unknown, |factor| Part::Sum([Some((a, factor)), None]))
             }
             Node::Apply(Operation::IntegerPower, [base, exponent, _]) => match self.exponent(exponent) {
                 Some(exponent) if exponent <= HIGHEST => Part::Power(base, exponent),
@@ -181,7 +183,7 @@ impl Program {
                 Part::Constant(constant) => found.add_constant(product(factor, constant)?),
                 Part::Power(base, exponent) => found.add(base, exponent as usize, factor)?,
                 Part::Sum(parts) if id == outer || readers[id.index()] == 1 => {
-                    for (part, by) in parts.into_iter().rev() {
+                    for (part, by) in parts.into_iter().rev().flatten() {
                         ahead.push((part, product(factor, by)?));
                     }
                 }

@@ -1,5 +1,7 @@
 //! Polynomials of one variable, computed with exactly or not at all.
 
+use crate::program::exact::{product, quotient, sum};
+
 /// c₀ + c₁·u + c₂·u² + …, its coefficients in this order. The last one is not zero.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Polynomial(Vec<f64>);
@@ -147,30 +149,6 @@ impl Polynomial {
     }
 }
 
-/// The least size of products whose rounding errors are doubles, too.
-const LEAST: f64 = 1e-280;
-
-/// a + b, if that is a double.
-pub(super) fn sum(a: f64, b: f64) -> Option<f64> {
-    let sum = a + b;
-    let of_b = sum - a;
-    let error = (a - (sum - of_b)) + (b - of_b);
-    (error == 0.0).then_some(sum)
-}
-
-/// a·b, if that is a double.
-pub(super) fn product(a: f64, b: f64) -> Option<f64> {
-    let product = a * b;
-    let is_exact = a.mul_add(b, -product) == 0.0 && product.abs() >= LEAST;
-    (is_exact || a == 0.0 || b == 0.0).then_some(product)
-}
-
-/// a/b, if that is a double.
-pub(super) fn quotient(a: f64, b: f64) -> Option<f64> {
-    let quotient = a / b;
-    (product(quotient, b)? == a && quotient.is_finite()).then_some(quotient)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -253,16 +231,5 @@ mod tests {
         ] {
             assert_eq!(polynomial(coefficients).steps(), [polynomial(coefficients)]);
         }
-    }
-
-    #[test]
-    fn what_is_rounded_is_not_said() {
-        assert_eq!((sum(0.5, 0.25), sum(1.0, 1e-17), sum(0.1, 0.2)), (Some(0.75), None, None));
-        assert_eq!((product(0.5, 0.1), product(0.1, 0.1), product(1e-200, 1e-200)), (Some(0.05), None, None));
-        assert_eq!((quotient(0.3, 2.0), quotient(1.0, 3.0), quotient(1.0, 0.0)), (Some(0.15), None, None));
-        assert_eq!(
-            (sum(f64::MAX, f64::MAX), product(f64::MAX, 2.0), product(0.0, 5.0)),
-            (None, None, Some(0.0))
-        );
     }
 }

@@ -1,5 +1,6 @@
 //! Operations on constants.
 
+use crate::program::exact::{product_is_exact, sum_is_exact};
 use crate::{Constant, Decorated, Decoration, Node, NodeId, Operation, Program, Value};
 
 /// The constant that `operation` gives when all `operands` are constants. None when it is undefined, or its double is not
@@ -33,9 +34,6 @@ pub(in crate::program) fn folded(
     is_number.then(|| Constant::folded(value, interval))
 }
 
-/// Below this magnitude, the error of a product may itself be too small for a double.
-const LEAST_WITH_EXACT_ERROR: f64 = 1e-290;
-
 /// Whether the finite double `value` is known to be the real result of `operation` on a and b, not only its rounding.
 fn is_exact(operation: Operation, a: f64, b: f64, value: f64) -> bool {
     use Operation as Op;
@@ -55,19 +53,6 @@ fn is_exact(operation: Operation, a: f64, b: f64, value: f64) -> bool {
         Op::Less | Op::LessOrEqual | Op::Equal | Op::Select => true,
         _ => false,
     }
-}
-
-/// Whether a + b is `sum` (the error of a sum by Knuth, 'The Art of Computer Programming', volume 2, theorem 4.2.2 B).
-fn sum_is_exact(a: f64, b: f64, sum: f64) -> bool {
-    let of_b = sum - a;
-    let of_a = sum - of_b;
-    (a - of_a) + (b - of_b) == 0.0
-}
-
-/// Whether a · b is `product`: a fused product has one rounding, which is exact when the error is a double.
-fn product_is_exact(a: f64, b: f64, product: f64) -> bool {
-    let error_is_a_double = product.abs() >= LEAST_WITH_EXACT_ERROR || a == 0.0 || b == 0.0;
-    error_is_a_double && a.mul_add(b, -product) == 0.0
 }
 
 /// Whether the `exponent`-th power of `base` is `power`: no product on the way has more digits than the last one.
