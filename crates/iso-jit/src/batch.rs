@@ -124,12 +124,16 @@ impl Blueprint for BatchBlueprint<'_> {
         let stride = builder.ins().imul_imm_s(count, size_of::<f64>() as i64);
         let last = builder.ins().iadd_imm_s(stride, -(step as i64));
         let first = builder.ins().iconst(types::I64, 0);
+        // Once for all rounds, which would be up to half as long again.
+        let mut writer = Writer::new(builder, Lanes::Two);
+        let starts: Vec<Value> =
+            (0..self.program.arguments()).map(|number| writer.load_address(arguments, number)).collect();
         let (round, end) = (builder.create_block(), builder.create_block());
         let offset = builder.append_block_param(round, types::I64);
         builder.ins().jump(round, &[first.into()]);
 
         builder.switch_to_block(round);
-        self.write_round(builder, calls, arguments, values, stride, offset);
+        self.write_round(builder, calls, &starts, values, stride, offset);
         let next = builder.ins().iadd_imm_s(offset, step as i64);
         let beyond = builder.ins().icmp(IntCC::UnsignedGreaterThan, next, last);
         let next = builder.ins().select(beyond, last, next);
@@ -147,12 +151,12 @@ impl Blueprint for BatchBlueprint<'_> {
 }
 
 impl BatchBlueprint<'_> {
-    /// Writes the evaluation of the points that stand `offset` bytes after the first.
+    /// Writes the evaluation of the points that stand `offset` bytes after the first, given where each argument starts.
     fn write_round(
         &self,
         builder: &mut FunctionBuilder<'_>,
         calls: &mut Calls<'_>,
-        arguments: Value,
+        starts: &[Value],
         values: Value,
         stride: Value,
         offset: Value,
@@ -160,8 +164,7 @@ impl BatchBlueprint<'_> {
         let mut writer = Writer::new(builder, Lanes::Two);
         let displacement = |pair: usize| (size_of::<f64>() * PAIR * pair) as i32;
         let argument = |writer: &mut Writer<'_, '_>, argument: Argument| {
-            let start = writer.load_address(arguments, argument.index());
-            let address = writer.builder.ins().iadd(start, offset);
+            let address = writer.builder.ins().iadd(starts[argument.index()], offset);
             (0..self.pairs).map(|pair| writer.load(address, displacement(pair))).collect()
         };
         let outputs = values::evaluate(&mut writer, calls, self.program, self.pairs, argument);
