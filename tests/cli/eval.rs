@@ -30,6 +30,19 @@ fn gradients_stand_beside_the_values() {
 }
 
 #[test]
+fn points_can_be_given_without_a_table() {
+    let case = Case::new();
+    for engine in ENGINES {
+        let arguments = ["eval", "x y", "--level", "1", "--at", "-1/2,4,0", "--at=0,0,0", "--gradient"];
+        let arguments = [&arguments[..], &["--engine", engine]].concat();
+        case.run(&arguments).exits(0).prints("value,dx,dy,dz\n-3,4,-0.5,0\n-1,0,0,0\n");
+    }
+    case.run(&["eval", "x", "--at", "1,2"]).exits(2).mentions("expected 3 numbers (x,y,z), found 2");
+    case.run(&["eval", "x = 1", "--level", "1", "--at", "1,2,3"]).exits(2).mentions("leave out --level");
+    case.run(&["eval", "x"]).exits(2).mentions("--at <X,Y,Z>|--points <FILE.csv>|--boxes <FILE.csv>");
+}
+
+#[test]
 fn an_equation_is_its_left_side_minus_its_right_side() {
     let case = Case::new();
     case.file("points.csv", "x,y,z\n5,3,0\n");

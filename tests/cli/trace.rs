@@ -1,4 +1,4 @@
-//! `iso trace`: rays of a table.
+//! `iso trace`: rays, from a table or not.
 
 use crate::harness::Case;
 
@@ -53,6 +53,20 @@ fn rays_end_where_the_sphere_is() {
             assert!(rows[1].1.iter().all(|number| number.is_nan()), "{table}");
         }
     }
+}
+
+#[test]
+fn rays_can_be_given_without_a_table() {
+    let case = Case::new();
+    let run = |flags: &[&str]| case.run(&[&["trace", "x^2 + y^2 + z^2 = 1"], flags].concat());
+    let found = run(&["--ray", "-3,0,0,2,0,0", "--ray=-3,2,0,1,0,0", "--json"]).exits(0).json();
+    assert_eq!(found[0]["status"], "hit");
+    assert_eq!([&found[0]["t"], &found[0]["x"], &found[0]["nx"]], [1.0, -1.0, -1.0]);
+    assert_eq!([&found[1]["status"], &found[1]["t"]], ["miss", "nan"]);
+    assert_eq!(found.as_array().unwrap().len(), 2);
+    run(&["--ray", "0,0,0,0,0,0"]).exits(2).mentions("the direction is zero");
+    run(&["--ray", "0,0,0"]).exits(2).mentions("expected 6 numbers");
+    run(&[]).exits(2).mentions("--ray <OX,OY,OZ,DX,DY,DZ>|--rays <FILE.csv>");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use glam::DVec3;
 use iso_expr::Ast;
-use iso_grid::{GridSettings, Region};
+use iso_grid::{GridSettings, Ray, Region};
 use iso_render::{Background, Size, Smoothing};
 use serde::Serialize;
 
@@ -50,6 +50,16 @@ pub(crate) fn vector(text: &str) -> Result<DVec3, String> {
         [x, y, z] => Ok(DVec3::new(x, y, z)),
         ref others => Err(format!("expected 3 numbers (x,y,z), found {}", others.len())),
     }
+}
+
+/// `ox,oy,oz,dx,dy,dz`.
+pub(crate) fn ray(text: &str) -> Result<Ray, String> {
+    let [ox, oy, oz, dx, dy, dz] = numbers(text)?[..] else {
+        return Err(format!("expected 6 numbers (an origin and a direction), found `{text}`"));
+    };
+    let (origin, direction) = (DVec3::new(ox, oy, oz), DVec3::new(dx, dy, dz));
+    let is_still = direction == DVec3::ZERO;
+    if is_still { Err("the direction is zero".to_owned()) } else { Ok(Ray { origin, direction }) }
 }
 
 /// `n` for the same count along every axis, or `i,j,k`.

@@ -8,8 +8,8 @@ use iso_expr::{Decoration, Engine, Program, Scratch};
 
 use crate::engine::engine;
 use crate::failure::Failure;
-use crate::flags::EvalFlags;
-use crate::formula::understand;
+use crate::flags::{EvalFlags, PlacesFlags};
+use crate::formula::{minus_level, understand};
 use crate::output::Destination;
 use crate::rounding::{Rounded, rounded};
 use crate::table::{self, Form, Table, TableError, TableWriter, digits};
@@ -17,19 +17,27 @@ use crate::table::{self, Form, Table, TableError, TableWriter, digits};
 /// Rows that are evaluated at a time.
 const BATCH: usize = 4096;
 
-/// Evaluates a formula at the rows of a table.
+/// Evaluates a formula at points, or over boxes.
 pub(crate) fn run(flags: EvalFlags) -> Result<(), Failure> {
-    let destination = Destination::new(flags.places.output)?;
-    let formula = understand(&flags.formula)?;
-    let value = formula.program().simplified();
-    let program = if flags.places.gradient { value.with_gradient().simplified() } else { value };
+    let places = &flags.places;
+    let destination = Destination::new(flags.table.output.clone())?;
+    let value = minus_level(&understand(&flags.formula)?, flags.level.level)?.simplified();
+    let program = if places.gradient { value.with_gradient().simplified() } else { value };
     let engine = engine(flags.engine.engine)?;
-    let form = if flags.places.json { Form::Json } else { Form::Csv };
-    match (&flags.places.points, &flags.places.boxes) {
-        (Some(path), _) if flags.places.error => with_errors(engine, &program, path, &destination, form),
-        (Some(path), _) => at_points(engine, &program, path, &destination, form),
-        (None, Some(path)) => over_boxes(engine, &program, path, &destination, form),
-        (None, None) => Err(Failure::usage("there is nowhere to evaluate", "give --points or --boxes")),
+    let form = flags.table.form();
+    if let Some(path) = &places.boxes {
+        return over_boxes(engine, &program, &read_boxes(path)?, &destination, form);
+    }
+    let points = points(places)?;
+    let evaluate = if places.error { with_errors } else { at_points };
+    evaluate(engine, &program, &points, &destination, form)
+}
+
+/// The coordinates of the points that were given.
+fn points(places: &PlacesFlags) -> Result<[Vec<f64>; 3], TableError> {
+    match &places.points {
+        Some(path) => Ok(table::read(path, ["x", "y", "z"])?.columns),
+        None => Ok([0, 1, 2].map(|axis| places.at.iter().map(|point| point[axis]).collect())),
     }
 }
 
@@ -39,13 +47,11 @@ const VALUE_COLUMNS: [&str; 4] = ["value", "dx", "dy", "dz"];
 fn at_points(
     engine: Arc<dyn Engine>,
     program: &Program,
-    path: &Path,
+    [x, y, z]: &[Vec<f64>; 3],
     destination: &Destination,
     form: Form,
 ) -> Result<(), Failure> {
-    let points = table::read(path, ["x", "y", "z"])?;
     let kernel = engine.batch(program)?;
-    let [x, y, z] = &points.columns;
     let outputs = program.outputs().len();
     let mut scratch = Scratch::default();
     destination.write(|writer| {
@@ -67,13 +73,11 @@ fn at_points(
 fn with_errors(
     engine: Arc<dyn Engine>,
     program: &Program,
-    path: &Path,
+    [x, y, z]: &[Vec<f64>; 3],
     destination: &Destination,
     form: Form,
 ) -> Result<(), Failure> {
-    let points = table::read(path, ["x", "y", "z"])?;
     let (values, enclosures) = (engine.batch(program)?, engine.boxes(program)?);
-    let [x, y, z] = &points.columns;
     let outputs = program.outputs().len();
     let mut scratch = Scratch::default();
     destination.write(|writer| {
@@ -102,11 +106,10 @@ impl Rounded {
 fn over_boxes(
     engine: Arc<dyn Engine>,
     program: &Program,
-    path: &Path,
+    boxes: &Table<6>,
     destination: &Destination,
     form: Form,
 ) -> Result<(), Failure> {
-    let boxes = read_boxes(path)?;
     let kernel = engine.boxes(program)?;
     let outputs = program.outputs().len();
     let mut scratch = Scratch::default();

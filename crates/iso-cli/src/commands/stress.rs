@@ -15,8 +15,6 @@ use crate::stress::{Case, Measured, cases, measure, write_document, write_page, 
 /// Runs the suite, or one case of it.
 pub(crate) fn run(flags: StressFlags) -> Result<(), Failure> {
     let to_file = |path: &Path| OutputFile::new(path.to_owned());
-    let json_replaces_table = flags.json.as_deref() == Some(Path::new("-"));
-    let json = flags.json.as_deref().filter(|_| !json_replaces_table).map(to_file).transpose()?;
     let html = flags.html.as_deref().map(to_file).transpose()?;
     let markdown = flags.markdown.as_deref().map(to_file).transpose()?;
     let cases = chosen(flags.case.as_deref())?;
@@ -33,16 +31,13 @@ pub(crate) fn run(flags: StressFlags) -> Result<(), Failure> {
     });
     progress.finish();
     let measured = measured?;
-    if let Some(file) = json {
-        file.write(|writer| serde_json::to_writer_pretty(writer, &measured))?;
-    }
     if let Some(file) = html {
         file.write(|mut writer| write_page(&mut writer, &measured))?;
     }
     if let Some(file) = markdown {
         file.write(|mut writer| write_document(&mut writer, &measured, flags.size))?;
     }
-    to_standard_output(|writer| match json_replaces_table {
+    to_standard_output(|writer| match flags.json {
         true => {
             serde_json::to_writer_pretty(&mut *writer, &measured)?;
             writeln!(writer)

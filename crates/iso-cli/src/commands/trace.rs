@@ -1,6 +1,6 @@
-//! `iso trace`: rays of a table, followed to the surface.
+//! `iso trace`: rays, followed to the surface.
 
-use std::io::{self, Write};
+use std::iter;
 use std::path::Path;
 
 use glam::DVec3;
@@ -18,19 +18,19 @@ use crate::method::{method, region};
 use crate::output::Destination;
 use crate::pictures::status_name;
 use crate::plan::plan_of_rays;
-use crate::table::{self, TableError, digits, write_row};
+use crate::table::{self, TableError, TableWriter, digits};
 
 /// Rays that a thread follows at a time.
 const BATCH: usize = 1024;
 
-/// Follows the rays of a table.
+/// Follows rays.
 pub(crate) fn run(flags: TraceFlags) -> Result<(), Failure> {
     let interruption = Interruption::new(&flags.limit);
     let method = method(&flags.method)?;
-    let destination = Destination::new(flags.tables.output)?;
+    let destination = Destination::new(flags.table.output.clone())?;
     let formula = understand(&flags.formula)?;
     let program = minus_level(&formula, flags.level.level)?.simplified();
-    let rays = read_rays(&flags.tables.rays)?;
+    let rays = flags.rays.rays.as_deref().map_or(Ok(flags.rays.ray), read_rays)?;
     let plan = plan_of_rays(method, &program, flags.method.region.region.is_some());
     let surface = Surface::new(engine(flags.engine.engine)?, program).stopped_by(interruption.stop());
     plan.compile(&surface)?;
@@ -44,8 +44,10 @@ pub(crate) fn run(flags: TraceFlags) -> Result<(), Failure> {
     let all = rays.len() as u64;
     interruption.check_begun(unfinished, all)?;
     destination.write(|writer| {
-        write_row(writer, ["status", "t", "t_lo", "t_hi", "x", "y", "z", "nx", "ny", "nz"])?;
-        rays.iter().zip(&followed).try_for_each(|(ray, end)| write_end(writer, ray, end.as_ref()))
+        let mut table = TableWriter::new(writer, COLUMNS.map(str::to_owned).to_vec(), flags.table.form())?;
+        let mut rows = rays.iter().zip(&followed);
+        rows.try_for_each(|(ray, end)| table.row(fields(ray, end.as_ref())))?;
+        table.finish()
     })?;
     interruption.check_done(unfinished, all, "rays")
 }
@@ -94,19 +96,25 @@ fn follow(surface: &Surface, tracer: &dyn Tracer, rays: &[Ray]) -> Result<Vec<Op
     Ok(followed)
 }
 
-fn write_end(writer: &mut dyn Write, ray: &Ray, end: Option<&End>) -> io::Result<()> {
-    let Some((outcome, normal)) = end else {
-        return write_row(writer, [status_name(Status::Unfinished)].into_iter().chain(["nan"; 9]));
+/// The columns of the result.
+const COLUMNS: [&str; 10] = ["status", "t", "t_lo", "t_hi", "x", "y", "z", "nx", "ny", "nz"];
+
+/// What became of a ray, column by column.
+fn fields(ray: &Ray, end: Option<&End>) -> impl Iterator<Item = String> {
+    let (status, numbers) = match end {
+        Some((outcome, normal)) => (Status::from(outcome), numbers(ray, outcome, normal)),
+        None => (Status::Unfinished, [f64::NAN; COLUMNS.len() - 1]),
     };
+    iter::once(status_name(status).to_owned()).chain(numbers.map(digits))
+}
+
+/// The numbers of a ray that was followed.
+fn numbers(ray: &Ray, outcome: &Outcome, normal: &DVec3) -> [f64; COLUMNS.len() - 1] {
     let (t, t_lo, t_hi) = match outcome {
         Outcome::Hit(hit) | Outcome::Touch(hit) => (hit.t, hit.bracket.start, hit.bracket.end),
         Outcome::Miss => (f64::NAN, f64::NAN, f64::NAN),
         Outcome::Undecided(span) => (f64::NAN, span.start, span.end),
     };
     let point = ray.at(t);
-    let numbers = [t, t_lo, t_hi, point.x, point.y, point.z, normal.x, normal.y, normal.z];
-    write_row(
-        writer,
-        std::iter::once(status_name(Status::from(outcome)).to_owned()).chain(numbers.map(digits)),
-    )
+    [t, t_lo, t_hi, point.x, point.y, point.z, normal.x, normal.y, normal.z]
 }

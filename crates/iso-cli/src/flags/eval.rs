@@ -3,12 +3,14 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
+use glam::DVec3;
 
-use super::{EngineFlag, FormulaFlags};
+use super::{EngineFlag, FormulaFlags, LevelFlag, TableFlags};
+use crate::values;
 
 /// Evaluate a formula at points or over boxes
 ///
-/// The value of an equation is its left side minus its right side. Numbers are written with the digits that read back to
+/// The value of an equation is its left side minus its right side, and that of an expression is less by `--level`. Numbers are written with the digits that read back to
 /// the same float.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, group = ArgGroup::new("places").required(true))]
@@ -16,15 +18,23 @@ pub(crate) struct EvalFlags {
     #[command(flatten)]
     pub(crate) formula: FormulaFlags,
     #[command(flatten)]
+    pub(crate) level: LevelFlag,
+    #[command(flatten)]
     pub(crate) places: PlacesFlags,
+    #[command(flatten)]
+    pub(crate) table: TableFlags,
     #[command(flatten)]
     pub(crate) engine: EngineFlag,
 }
 
-/// Where the formula is evaluated, and what is written.
+/// Where the formula is evaluated, and what of it.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Tables")]
+#[command(next_help_heading = "Places and values")]
 pub(crate) struct PlacesFlags {
+    /// A point; may be repeated
+    #[arg(long, value_name = "X,Y,Z", group = "places", allow_hyphen_values = true, value_parser = values::vector)]
+    pub(crate) at: Vec<DVec3>,
+
     /// A table of points with the columns x,y,z; `-` is standard input
     #[arg(long, value_name = "FILE.csv", group = "places")]
     pub(crate) points: Option<PathBuf>,
@@ -40,14 +50,6 @@ pub(crate) struct PlacesFlags {
     /// Add to each value a bound of its rounding error, and how many digits it may have lost
     #[arg(long, conflicts_with = "boxes")]
     pub(crate) error: bool,
-
-    /// Write one JSON object for each row, in an array, in place of comma-separated values
-    #[arg(long)]
-    pub(crate) json: bool,
-
-    /// The table of results [default: standard output]
-    #[arg(short, long, value_name = "FILE")]
-    pub(crate) output: Option<PathBuf>,
 }
 
 const EXAMPLES: &str = "\
@@ -58,6 +60,7 @@ With --error, each column v of a value is followed by v_error and v_digits_lost:
 so that as many of a double's 16 digits may be wrong. It is inf where no bound is known, and nan where the formula is undefined.
 
 Examples:
+  iso eval 'sin(x)*y + z' --at pi/2,2,1 --gradient
   iso eval 'sqrt(x^2 + y^2) - z' --points points.csv
   iso eval 'sqrt(x^2 + y^2) - z' --points points.csv --gradient -o values.csv
   iso eval '(1 - cos(x))/x^2' --points points.csv --error

@@ -14,12 +14,13 @@ mod render;
 mod report;
 mod sequence;
 mod stress;
+mod tables;
 mod trace;
 
 pub(crate) use bench::BenchFlags;
 pub(crate) use camera::CameraFlags;
 pub(crate) use engines::EnginesFlags;
-pub(crate) use eval::EvalFlags;
+pub(crate) use eval::{EvalFlags, PlacesFlags};
 #[cfg(feature = "jit")]
 pub(crate) use explain::KernelName;
 pub(crate) use explain::{ExplainFlags, Section};
@@ -33,6 +34,7 @@ pub(crate) use render::{LayerFlags, PictureFlags, RenderFlags, SummaryFlags};
 pub(crate) use report::{AxesFlags, ReportFlags, SuiteName};
 pub(crate) use sequence::SequenceFlags;
 pub(crate) use stress::StressFlags;
+pub(crate) use tables::TableFlags;
 pub(crate) use trace::TraceFlags;
 
 use clap::{Parser, Subcommand};
@@ -56,7 +58,7 @@ pub(crate) enum Command {
     Render(Box<RenderFlags>),
     /// Evaluate a formula at points or over boxes
     Eval(EvalFlags),
-    /// Follow rays from a table to the surface
+    /// Follow rays to the surface
     Trace(TraceFlags),
     /// Show what a picture takes, and what becomes of its formula
     Explain(Box<ExplainFlags>),

@@ -24,9 +24,9 @@ pub(crate) struct StressFlags {
     #[arg(long, value_name = "WxH", default_value = "48x48", value_parser = values::size)]
     pub(crate) size: Size,
 
-    /// Write all figures as JSON; `-` is standard output, in place of the table
-    #[arg(long, value_name = "FILE.json")]
-    pub(crate) json: Option<PathBuf>,
+    /// Print all figures as JSON, in place of the table
+    #[arg(long)]
+    pub(crate) json: bool,
 
     /// Write a page with a picture of each case for each method
     #[arg(long, value_name = "FILE.html")]
@@ -44,7 +44,7 @@ const EXAMPLES: &str = "\
 Examples:
   iso stress
   iso stress --case shell_1e-6 --size 256x256 --html shell.html
-  iso stress --json - --size 16x16
+  iso stress --json --size 16x16
   iso stress --markdown docs/stability.md
 
 Exit codes: 0 every promise held, 1 one did not, 2 bad usage.";

@@ -2,15 +2,17 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{ArgGroup, Args};
+use iso_grid::Ray;
 
-use super::{EngineFlag, FormulaFlags, LevelFlag, LimitFlags, MethodFlags, ThreadsFlag};
+use super::{EngineFlag, FormulaFlags, LevelFlag, LimitFlags, MethodFlags, TableFlags, ThreadsFlag};
+use crate::values;
 
-/// Follow rays from a table to the surface
+/// Follow rays to the surface
 ///
 /// A ray is the points o + t·d with t ≥ 0, where d may have any length. Rows of the result are in the order of the rays.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, group = ArgGroup::new("origins").required(true))]
 pub(crate) struct TraceFlags {
     #[command(flatten)]
     pub(crate) formula: FormulaFlags,
@@ -19,7 +21,9 @@ pub(crate) struct TraceFlags {
     #[command(flatten)]
     pub(crate) method: MethodFlags,
     #[command(flatten)]
-    pub(crate) tables: RayTableFlags,
+    pub(crate) rays: RaysFlags,
+    #[command(flatten)]
+    pub(crate) table: TableFlags,
     #[command(flatten)]
     pub(crate) engine: EngineFlag,
     #[command(flatten)]
@@ -28,17 +32,17 @@ pub(crate) struct TraceFlags {
     pub(crate) limit: LimitFlags,
 }
 
-/// The rays and what becomes of them.
+/// The rays that are followed.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Tables")]
-pub(crate) struct RayTableFlags {
-    /// A table of rays with the columns ox,oy,oz,dx,dy,dz; `-` is standard input
-    #[arg(long, value_name = "FILE.csv")]
-    pub(crate) rays: PathBuf,
+#[command(next_help_heading = "Rays")]
+pub(crate) struct RaysFlags {
+    /// A ray from a point along a direction; may be repeated
+    #[arg(long, value_name = "OX,OY,OZ,DX,DY,DZ", group = "origins", allow_hyphen_values = true, value_parser = values::ray)]
+    pub(crate) ray: Vec<Ray>,
 
-    /// The table of results [default: standard output]
-    #[arg(short, long, value_name = "FILE.csv")]
-    pub(crate) output: Option<PathBuf>,
+    /// A table of rays with the columns ox,oy,oz,dx,dy,dz; `-` is standard input
+    #[arg(long, value_name = "FILE.csv", group = "origins")]
+    pub(crate) rays: Option<PathBuf>,
 }
 
 const EXAMPLES: &str = "\
@@ -46,5 +50,6 @@ Columns of the result: status,t,t_lo,t_hi,x,y,z,nx,ny,nz. The status is hit, tou
 and t_hi, and the normal points towards larger F. What does not exist is nan.
 
 Examples:
+  iso trace 'x^2 + y^2 + z^2 = 1' --ray=-3,0,0,1,0,0 --json
   iso trace 'x^2 + y^2 + z^2 = 1' --rays rays.csv
   iso trace @surface.txt --rays rays.csv --box -3,3 --method grid --grid 60 -o hits.csv";
