@@ -13,7 +13,8 @@ use std::time::Duration;
 
 use iso_expr::Engine;
 use iso_grid::{
-    Certified, Direct, Grid, GridSettings, Hit, Octree, Outcome, Ray, RootFinding, Surface, Tracer, Workspace,
+    Certified, Direct, Grid, GridSettings, Hit, Kernel, Octree, Outcome, Ray, RootFinding, Surface, Tracer,
+    Workspace,
 };
 use iso_jit::Jit;
 use iso_render::Stopwatch;
@@ -189,9 +190,9 @@ impl Tally {
 
 /// Compiles the kernels that methods ask for, so that no method is charged for it.
 fn compile(surface: &Surface) {
-    surface.values().expect("the scenes compile");
-    surface.value_enclosures().expect("the scenes compile");
-    surface.gradient_enclosures().expect("the scenes compile");
+    surface.over_points(Kernel::Values).expect("the scenes compile");
+    surface.over_boxes(Kernel::ValueEnclosures).expect("the scenes compile");
+    surface.over_boxes(Kernel::GradientEnclosures).expect("the scenes compile");
 }
 
 fn print_summary(totals: &[Tally; METHODS.len()]) {

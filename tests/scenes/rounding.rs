@@ -3,7 +3,7 @@
 use glam::DVec3;
 use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::{Decoration, Interval};
-use iso_grid::{Surface, Workspace};
+use iso_grid::{Kernel, Surface, Workspace};
 
 use super::Verdict;
 
@@ -40,7 +40,7 @@ fn enclosures(surface: &Surface, verdict: &Verdict, slack: f64) -> [Interval; 4]
     });
     let (lo, hi) = (ends.map(|(lo, _)| [lo]), ends.map(|(_, hi)| [hi]));
     let (mut low, mut high, mut decoration) = ([0.0; 4], [0.0; 4], [Decoration::Trivial; 4]);
-    surface.gradient_enclosures().expect("the scenes compile").evaluate(
+    surface.over_boxes(Kernel::GradientEnclosures).expect("the scenes compile").evaluate(
         &mut Workspace::default().scratch,
         Boxes { lo: lo.each_ref().map(|end| &end[..]), hi: hi.each_ref().map(|end| &end[..]) },
         Enclosures { lo: &mut low, hi: &mut high, decoration: &mut decoration },

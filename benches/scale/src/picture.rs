@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use iso_expr::{Engine, Interpreter, Program};
-use iso_grid::{Certified, Region, Surface};
+use iso_grid::{Certified, Kernel, Region, Surface};
 use iso_jit::Jit;
 use iso_render::{
     Camera, Layers, Look, Plan, Projection, Scene, Shading, Size, Smoothing, View, Wanted, render,
@@ -45,7 +45,7 @@ impl Subject {
         let region = Region::new(DVec3::splat(-radius), DVec3::splat(radius))?;
         let surface = Surface::new(engine, program.clone());
         let tracer = Certified::new(&surface, region)?;
-        surface.by_signs().gradients()?;
+        surface.by_signs().over_points(Kernel::Gradients)?;
         Ok(Self { surface, tracer, region, radius, preparation: start.elapsed().as_secs_f64() })
     }
 

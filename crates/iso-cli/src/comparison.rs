@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use iso_expr::CompileError;
-use iso_grid::{Hit, Outcome, Ray, Surface, Workspace, normals};
+use iso_grid::{Hit, Kernel, Outcome, Ray, Surface, Workspace, normals};
 
 use crate::rounding::rounded;
 
@@ -169,7 +169,8 @@ fn residuals(surface: &Surface, rays: &[Ray], outcomes: &[Outcome]) -> Result<Ve
     };
     let points: Vec<DVec3> = rays.iter().zip(outcomes).map(found).collect();
     let [x, y, z] = [0, 1, 2].map(|axis| points.iter().map(|point| point[axis]).collect::<Vec<f64>>());
-    let (values, enclosures) = (surface.values()?, surface.value_enclosures()?);
+    let (values, enclosures) =
+        (surface.over_points(Kernel::Values)?, surface.over_boxes(Kernel::ValueEnclosures)?);
     let points = [&x[..], &y, &z];
     let rounded = rounded(&**values, &**enclosures, &mut Workspace::default().scratch, points, 1);
     Ok(rounded.into_iter().map(|value| [value.value.abs(), value.error]).collect())

@@ -1,7 +1,7 @@
 //! Formulas F(x, y, z): text, programs, derivatives, intervals and the interpreter.
 //!
 //! ```text
-//! text ─ parse → Ast ─ lower → Program ─ simplify, differentiate, substitute → Program ─ Engine → kernels
+//! text ─ parse → Ast ─ lower → Program ─ simplify, differentiate → Program ─ Engine → kernels
 //! ```
 //!
 //! [`Operation`] is the one table of operations; everything else in this crate and in the engines reads it.

@@ -8,7 +8,7 @@ use glam::{DVec3, IVec3};
 use iso_expr::{BoxKernel, CompileError, Decorated, Decoration};
 
 use crate::batch::BoxBatch;
-use crate::{Region, Surface, Workspace};
+use crate::{Kernel, Region, Surface, Workspace};
 pub use sphere::Sphere;
 
 /// Half the sides of the cubes around the origin in which the surface is looked for, one after the other.
@@ -113,7 +113,7 @@ impl Fitted {
     /// When the engine cannot compile the surface.
     pub fn around(surface: &Surface, workspace: &mut Workspace) -> Result<Self, CompileError> {
         let surface = surface.by_signs();
-        let kernel = &**surface.value_enclosures()?;
+        let kernel = &**surface.over_boxes(Kernel::ValueEnclosures)?;
         let is_stopped = || surface.stop().is_requested();
         let mut best: Option<(usize, Glimpse)> = None;
         let mut goes_on = false;
@@ -184,7 +184,7 @@ impl Region {
     /// When the engine cannot compile the surface.
     pub fn enclosure(&self, surface: &Surface, workspace: &mut Workspace) -> Result<Decorated, CompileError> {
         let corners = std::iter::once((self.min, self.max));
-        Ok(enclose(&**surface.value_enclosures()?, workspace, corners).decorated(0, 0))
+        Ok(enclose(&**surface.over_boxes(Kernel::ValueEnclosures)?, workspace, corners).decorated(0, 0))
     }
 
     /// Whether some of the surface may be in the region; if not, that is proven.
@@ -192,7 +192,7 @@ impl Region {
     /// # Errors
     /// When the engine cannot compile the surface.
     pub fn may_hold(&self, surface: &Surface, workspace: &mut Workspace) -> Result<bool, CompileError> {
-        Ok(!self.open_cells(&**surface.by_signs().value_enclosures()?, workspace).is_empty())
+        Ok(!self.open_cells(&**surface.by_signs().over_boxes(Kernel::ValueEnclosures)?, workspace).is_empty())
     }
 
     /// The cells, sixteen along each axis, that may hold the surface.

@@ -11,23 +11,23 @@ const AS_A_WHOLE: usize = 100;
 /// One of a surface's kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
-    /// F − C at points: [`Surface::values`](crate::Surface::values).
+    /// F − C at points.
     Values,
-    /// F − C and its gradient at points: [`Surface::gradients`](crate::Surface::gradients).
+    /// F − C and its three derivatives at points.
     Gradients,
-    /// F − C and its slope along a direction at points: [`Surface::slopes`](crate::Surface::slopes).
+    /// F − C and its [slope](Program::with_slope) along a direction at points.
     Slopes,
-    /// F − C over boxes: [`Surface::value_enclosures`](crate::Surface::value_enclosures).
+    /// F − C over boxes.
     ValueEnclosures,
-    /// F − C and its gradient over boxes: [`Surface::gradient_enclosures`](crate::Surface::gradient_enclosures).
+    /// F − C and its three derivatives over boxes.
     GradientEnclosures,
-    /// F − C, what rounding does to it and its gradient over boxes: [`Surface::rounding_bounds`](crate::Surface::rounding_bounds).
+    /// F − C, [what rounding does to it](Program::with_rounding) and its three derivatives over boxes.
     RoundingBounds,
-    /// F − C with its first and second derivatives over boxes: [`Surface::hessian_enclosures`](crate::Surface::hessian_enclosures).
+    /// F − C with its [first and second derivatives](Program::with_hessian) over boxes.
     HessianEnclosures,
-    /// The affine forms of F − C and its gradient: [`Surface::forms`](crate::Surface::forms).
+    /// The [affine forms](Program::with_forms) of F − C and its three derivatives.
     Forms,
-    /// The affine forms of F − C and its slope along parallel rays: [`Surface::parallel_forms`](crate::Surface::parallel_forms).
+    /// The [affine forms](Program::with_forms) of F − C and its slope along parallel rays.
     ParallelForms,
 }
 

@@ -9,7 +9,7 @@ use pulp::{Simd, WithSimd};
 use crate::area::Area;
 use crate::batch::PointBatch;
 use crate::lanes::{Lanes, ROW, Row, parts};
-use crate::{Hit, Outcome, Span, Surface, Tile, Tracer, Workspace};
+use crate::{Hit, Kernel, Outcome, Span, Surface, Tile, Tracer, Workspace};
 
 /// How many rows of points are asked about by one call of the kernel.
 const ROWS: usize = 32;
@@ -69,7 +69,7 @@ pub fn normals(
         }
     }
     if !(asked.is_empty() && others.is_empty()) {
-        let everywhere = &**surface.gradients()?;
+        let everywhere = &**surface.over_points(Kernel::Gradients)?;
         answer(everywhere, workspace, tile, &asked, normals);
         others.extend(unanswered(&asked, outcomes, normals));
         for approach in APPROACH {

@@ -83,11 +83,7 @@ impl Surface {
     pub fn by_signs(&self) -> &Self {
         let find = || {
             let value = self.value.told_by_signs();
-            let engine = Arc::clone(&self.engine);
-            (value != self.value).then(|| Self {
-                many: self.many.clone(),
-                ..Self::new(engine, value).stopped_by(self.stop.clone())
-            })
+            (value != self.value).then(|| self.another(Arc::clone(&self.engine), value))
         };
         self.by_signs.get_or_init(find).as_ref().unwrap_or(self)
     }
@@ -108,8 +104,8 @@ impl Surface {
 
     /// A surface that is this one in some places, where F − C comes to `value`. Its kernels are made for few runs.
     pub(crate) fn reduced_to(&self, value: Program) -> Self {
-        let many = Some(Arc::clone(self.many.as_ref().unwrap_or(&self.engine)));
-        Self { many, ..Self::new(self.engine.for_few_runs(), value).stopped_by(self.stop.clone()) }
+        let many = Some(Arc::clone(self.engine_for_many_runs()));
+        Self { many, ..self.another(self.engine.for_few_runs(), value) }
     }
 
     /// The same surface with kernels that are made for few runs.
@@ -118,10 +114,18 @@ impl Surface {
     }
 
     /// The same surface with kernels that are made for many runs.
-    pub(crate) fn compiled_for_many_runs(&self) -> Self {
-        let engine = self.many.as_ref().unwrap_or(&self.engine);
-        let surface = Self::new(Arc::clone(engine), self.value.clone()).stopped_by(self.stop.clone());
-        Self { programs: Arc::clone(&self.programs), ..surface }
+    pub(crate) fn made_for_many_runs(&self) -> Self {
+        let engine = Arc::clone(self.engine_for_many_runs());
+        Self { programs: Arc::clone(&self.programs), ..self.another(engine, self.value.clone()) }
+    }
+
+    /// The surface of another function, on which work ends with that on this one.
+    fn another(&self, engine: Arc<dyn Engine>, value: Program) -> Self {
+        Self { many: self.many.clone(), stop: self.stop.clone(), ..Self::new(engine, value) }
+    }
+
+    fn engine_for_many_runs(&self) -> &Arc<dyn Engine> {
+        self.many.as_ref().unwrap_or(&self.engine)
     }
 
     /// The program of F − C.
@@ -157,85 +161,6 @@ impl Surface {
         }
     }
 
-    /// F − C at points.
-    ///
-    /// # Errors
-    /// When the engine cannot compile it.
-    pub fn values(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
-        self.over_points(Kernel::Values)
-    }
-
-    /// F − C and its three derivatives at points.
-    ///
-    /// # Errors
-    /// When the engine cannot compile it.
-    pub fn gradients(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
-        self.over_points(Kernel::Gradients)
-    }
-
-    /// F − C and its [slope](Program::with_slope) along a direction at points.
-    ///
-    /// # Errors
-    /// When the engine cannot compile it.
-    pub fn slopes(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
-        self.over_points(Kernel::Slopes)
-    }
-
-    /// The [affine forms](Program::with_forms) of F − C and its three derivatives, made for few runs where that kernel is too large to be
-    /// compiled.
-    ///
-    /// # Errors
-    /// When the engine cannot do that either.
-    ///
-    /// # Panics
-    /// When there are [none](Program::has_forms).
-    pub fn forms(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
-        self.over_points(Kernel::Forms)
-    }
-
-    /// The same of F − C and its [slope](Program::with_slope).
-    ///
-    /// # Errors
-    /// Those of [`Surface::forms`].
-    ///
-    /// # Panics
-    /// When there are [none](Program::has_forms).
-    pub fn parallel_forms(&self) -> Result<&Arc<dyn BatchKernel>, CompileError> {
-        self.over_points(Kernel::ParallelForms)
-    }
-
-    /// F − C over boxes.
-    ///
-    /// # Errors
-    /// When the engine cannot compile it.
-    pub fn value_enclosures(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
-        self.over_boxes(Kernel::ValueEnclosures)
-    }
-
-    /// F − C and its three derivatives over boxes.
-    ///
-    /// # Errors
-    /// When the engine cannot compile it.
-    pub fn gradient_enclosures(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
-        self.over_boxes(Kernel::GradientEnclosures)
-    }
-
-    /// F − C, [what rounding does to it](Program::with_rounding) and its three derivatives over boxes.
-    ///
-    /// # Errors
-    /// When the engine cannot compile it.
-    pub fn rounding_bounds(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
-        self.over_boxes(Kernel::RoundingBounds)
-    }
-
-    /// F − C with its [first and second derivatives](Program::with_hessian) over boxes.
-    ///
-    /// # Errors
-    /// When the engine cannot compile it.
-    pub fn hessian_enclosures(&self) -> Result<&Arc<dyn BoxKernel>, CompileError> {
-        self.over_boxes(Kernel::HessianEnclosures)
-    }
-
     /// Compiles a kernel ahead of its use, so that the time it takes is known.
     ///
     /// # Errors
@@ -255,8 +180,14 @@ impl Surface {
             || matches!(over_boxes[kernel as usize].get(), Some(Ok(_)))
     }
 
-    /// A kernel that runs over points, or over forms.
-    pub(crate) fn over_points(&self, kernel: Kernel) -> Result<&Arc<dyn BatchKernel>, CompileError> {
+    /// A kernel that runs over points, or over forms. Forms are made for few runs where that kernel is too large to be compiled.
+    ///
+    /// # Errors
+    /// When the engine cannot compile it.
+    ///
+    /// # Panics
+    /// When forms are asked for and there are [none](Program::has_forms).
+    pub fn over_points(&self, kernel: Kernel) -> Result<&Arc<dyn BatchKernel>, CompileError> {
         let compile = || {
             let program = self.program_of(kernel);
             let compiled = self.engine.batch(program);
@@ -271,7 +202,10 @@ impl Surface {
     }
 
     /// A kernel that runs over boxes.
-    pub(crate) fn over_boxes(&self, kernel: Kernel) -> Result<&Arc<dyn BoxKernel>, CompileError> {
+    ///
+    /// # Errors
+    /// When the engine cannot compile it.
+    pub fn over_boxes(&self, kernel: Kernel) -> Result<&Arc<dyn BoxKernel>, CompileError> {
         let compile = || self.engine.boxes(self.program_of(kernel));
         self.kernels.over_boxes[kernel as usize].get_or_init(compile).as_ref().map_err(Clone::clone)
     }

@@ -19,24 +19,6 @@ impl Program {
         pruned
     }
 
-    /// A copy in which nodes of a new program stand for x, y and z: `variables` adds them and names them in that order.
-    ///
-    /// A ray `o + t·d` is such a substitution, with its parameter t a variable of the new program.
-    pub fn substituted(&self, variables: impl FnOnce(&mut Self) -> [NodeId; 3]) -> Self {
-        let mut program = Self::new();
-        let variables = variables(&mut program);
-        program.outputs = program.import(self, variables);
-        program.pruned()
-    }
-
-    /// Adds the nodes of `other` to this program, `variables` standing for x, y and z, and returns where its outputs are.
-    pub fn import(&mut self, other: &Self, variables: [NodeId; 3]) -> Vec<NodeId> {
-        self.import_with(other, |program, node| match node {
-            Node::Variable(argument) => variables[argument.index()],
-            node => program.intern(node),
-        })
-    }
-
     /// Adds the nodes of `other` as `build` makes them: it is given each node, its operands already replaced by what was
     /// built for them. Returns what was built for the outputs.
     pub(super) fn import_with(

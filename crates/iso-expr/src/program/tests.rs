@@ -1,6 +1,4 @@
-use super::reference::assert_same;
 use super::*;
-use crate::random::Random;
 use crate::{Ast, Engine, Interpreter, Scratch};
 
 fn polynomial() -> Program {
@@ -20,35 +18,11 @@ fn a_gradient_without_a_variable_is_the_literal_zero() {
 }
 
 #[test]
-fn substitution_leaves_no_node_that_nothing_needs() {
-    let on_a_line = polynomial().substituted(|program| {
-        let t = program.variable(Axis::X);
-        let three = program.literal(3.0);
-        let z = program.variable(Axis::Z);
-        let x = program.apply(Operation::Add, &[t, three]);
-        [x, t, z]
-    });
-    assert_eq!(on_a_line.to_string(), "v1 = x + 3\nv2 = v1 ^ 3\nv3 = v2 * x\nF = v3\n");
-}
-
-#[test]
-fn a_substituted_program_has_the_values_of_the_composition() {
-    let mut random = Random::new(1);
-    for _ in 0..500 {
-        let operations = random.below(20);
-        let outer = random.program(operations);
-        let inner = [(); 3].map(|()| random.program(5));
-        let composition = outer.substituted(|program| {
-            let variables = Axis::ALL.map(|axis| program.variable(axis));
-            inner.each_ref().map(|inner| program.import(inner, variables)[0])
-        });
-        for _ in 0..10 {
-            let point = [(); 3].map(|()| random.double());
-            let between = inner.each_ref().map(|inner| inner.evaluate(point)[0]);
-            let context = || format!("at {point:?} of\n{composition}");
-            assert_same(composition.evaluate(point)[0], outer.evaluate(between)[0], context);
-        }
-    }
+fn a_pruned_program_has_no_node_that_nothing_needs() {
+    let mut program = polynomial();
+    let z = program.variable(Axis::Z);
+    program.apply(Operation::Add, &[z, program.outputs()[0]]);
+    assert_eq!(program.pruned().to_string(), "v1 = x ^ 3\nv2 = v1 * y\nF = v2\n");
 }
 
 #[test]

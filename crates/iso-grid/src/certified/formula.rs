@@ -201,7 +201,7 @@ impl Formula {
     /// Notes that so many operations of a kernel were asked for.
     pub(super) fn wear(&self, kernel: Kernel, operations: u64) {
         if self.patience.wear(operations) {
-            let surface = self.surface.compiled_for_many_runs();
+            let surface = self.surface.made_for_many_runs();
             if Kernel::of_proofs(self.has_forms).all(|kernel| surface.compile(kernel).is_ok()) {
                 self.compiled.get_or_init(|| Arc::new(surface));
                 Kernel::ALL.into_iter().for_each(|kernel| self.compile_if_often(kernel));

@@ -106,12 +106,12 @@ impl Kernels {
     pub(super) fn gradients_at_points(&self, others: &Self) -> Option<Arc<dyn BatchKernel>> {
         let [these, those] = [self, others].map(|kernels| kernels.operations(Kernel::Gradients));
         let pays = MUCH_LESS * these <= those || Kernel::are_left_to_places(others.program());
-        pays.then(|| Arc::clone(compiled(self.formula.seldom().gradients())))
+        pays.then(|| Arc::clone(compiled(self.formula.seldom().over_points(Kernel::Gradients))))
     }
 
     /// F over boxes.
     pub(super) fn values(&self) -> &dyn BoxKernel {
-        &**compiled(self.formula.surface().value_enclosures())
+        &**compiled(self.formula.surface().over_boxes(Kernel::ValueEnclosures))
     }
 
     /// F with its gradient over boxes.

@@ -231,7 +231,7 @@ mod tests {
 
     use super::*;
     use crate::testing::{Function, surface_without_gradient, trace};
-    use crate::{Grid, GridSettings, Outcome, Ray, Region, Tracer};
+    use crate::{Grid, GridSettings, Kernel, Outcome, Ray, Region, Tracer};
 
     /// A ball, and a rod from it that is thinner than a cell of five and passes between their corners.
     fn ball_and_rod(p: DVec3) -> f64 {
@@ -329,7 +329,7 @@ mod tests {
             let kernel = surface_without_gradient(function);
             let mut counters = Counters::default();
             let found = Cells::find(
-                &**kernel.values().unwrap(),
+                &**kernel.over_points(Kernel::Values).unwrap(),
                 &Stop::default(),
                 &lattice,
                 settings.refinement,

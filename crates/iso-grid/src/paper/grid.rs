@@ -7,7 +7,7 @@ use crate::paper::lattice::Lattice;
 use crate::paper::lockstep::Lockstep;
 use crate::paper::stretch::{Spacing, Stretch, Stretches};
 use crate::paper::walk::CellWalk;
-use crate::{Counters, GridError, GridSettings, Outcome, Ray, Region, Surface, Tracer, Workspace};
+use crate::{Counters, GridError, GridSettings, Kernel, Outcome, Ray, Region, Surface, Tracer, Workspace};
 
 /// The paper's method: a grid that knows which of its cells hold the surface.
 ///
@@ -48,7 +48,7 @@ impl Grid {
             let (given, allowed) = (settings.count(), Self::MOST_CELLS);
             return Err(GridError::TooManyCells { method: "grid", given, allowed });
         }
-        let values = surface.values()?;
+        let values = surface.over_points(Kernel::Values)?;
         let lattice = Lattice::new(&region, settings.cells);
         let mut preprocessing = Counters::default();
         let along = |count: [u32; 3]| {

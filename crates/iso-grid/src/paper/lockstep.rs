@@ -7,7 +7,7 @@ use iso_expr::BatchKernel;
 use crate::paper::roots::{RootFinder, RootFinding};
 use crate::paper::search::Search;
 use crate::paper::stretch::Stretches;
-use crate::{GridError, Outcome, Ray, Region, Span, Stop, Surface, Workspace};
+use crate::{GridError, Kernel, Outcome, Ray, Region, Span, Stop, Surface, Workspace};
 
 /// Searches under way at once: enough to fill a kernel's batch, few enough to stay in the nearest cache.
 const LANES: usize = 64;
@@ -37,10 +37,10 @@ impl Lockstep {
     pub(crate) fn new(surface: &Surface, region: Region, roots: RootFinding) -> Result<Self, GridError> {
         roots.check()?;
         let gradients = match roots.finder {
-            RootFinder::Newton => Some(Arc::clone(surface.gradients()?)),
+            RootFinder::Newton => Some(Arc::clone(surface.over_points(Kernel::Gradients)?)),
             RootFinder::Bisection | RootFinder::Itp => None,
         };
-        let (values, stop) = (Arc::clone(surface.values()?), surface.stop().clone());
+        let (values, stop) = (Arc::clone(surface.over_points(Kernel::Values)?), surface.stop().clone());
         Ok(Self { region, roots, values, gradients, stop })
     }
 

@@ -199,7 +199,7 @@ mod tests {
     use super::*;
     use crate::area::Area;
     use crate::batch::BoxBatch;
-    use crate::{Raster, Span, Surface, Tile};
+    use crate::{Kernel, Raster, Span, Surface, Tile};
 
     const FORMULAS: [&str; 5] = [
         "x^2 + y^2 + z^2 - 1",
@@ -219,7 +219,7 @@ mod tests {
         /// F with its derivatives over a box.
         fn over(&mut self, lo: DVec3, hi: DVec3) -> [Decorated; 10] {
             self.boxes.replace(std::iter::once((lo, hi)));
-            let kernel = &**self.surface.hessian_enclosures().unwrap();
+            let kernel = &**self.surface.over_boxes(Kernel::HessianEnclosures).unwrap();
             self.boxes.evaluate(kernel, &mut self.scratch, 10);
             std::array::from_fn(|output| self.boxes.decorated(output, 0))
         }

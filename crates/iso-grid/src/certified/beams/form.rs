@@ -306,7 +306,7 @@ mod tests {
     use super::*;
     use crate::area::Area;
     use crate::batch::{FormBatch, PointBatch};
-    use crate::{Raster, Surface, Tile};
+    use crate::{Kernel, Raster, Surface, Tile};
 
     const FORMULAS: [&str; 5] = [
         "(x^2 + 2y^2 + z^2 - 1)^3 - x^2*z^3 - y^2*z^3/9",
@@ -349,18 +349,22 @@ mod tests {
             forms.push(&arguments);
             let found = match raster {
                 Raster::Parallel { direction, .. } => {
-                    forms.evaluate(&**surface.parallel_forms().unwrap(), Some(direction), &mut scratch);
+                    forms.evaluate(
+                        &**surface.over_points(Kernel::ParallelForms).unwrap(),
+                        Some(direction),
+                        &mut scratch,
+                    );
                     forms.found(0).map(|[value, slope]| (value, Ball::of(&slope)))
                 }
                 Raster::Spreading { .. } => {
-                    forms.evaluate(&**surface.forms().unwrap(), None, &mut scratch);
+                    forms.evaluate(&**surface.over_points(Kernel::Forms).unwrap(), None, &mut scratch);
                     let along = |gradient: [Affine; 3]| Ball::along(&beam.directions, &gradient);
                     forms.found(0).map(|[value, x, y, z]| (value, along([x, y, z])))
                 }
             };
             let Some((value, slope)) = found else { continue };
             let form = Form::affine(&beam, reach, (t, unit), &value, slope);
-            let gradients = surface.gradients().unwrap();
+            let gradients = surface.over_points(Kernel::Gradients).unwrap();
             for _ in 0..20 {
                 let (column, row) = (area.column + random.below(side), area.row + random.below(side));
                 let ray = tile.ray(column, row);

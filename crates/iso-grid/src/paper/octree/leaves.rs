@@ -184,14 +184,14 @@ mod tests {
     use super::*;
     use crate::paper::existence::Cells;
     use crate::testing::{Function, surface_without_gradient};
-    use crate::{GridSettings, Region};
+    use crate::{GridSettings, Kernel, Region};
 
     /// The existence cells of the octree, of the grid, and of both.
     fn cells_of_octree_grid_and_both(function: Function, cells: [u32; 3]) -> [usize; 3] {
         let region = Region::new(DVec3::splat(-1.0), DVec3::splat(1.0)).unwrap();
         let lattice = Lattice::new(&region, cells);
         let surface = surface_without_gradient(function);
-        let kernel = &**surface.values().unwrap();
+        let kernel = &**surface.over_points(Kernel::Values).unwrap();
         let refinement = GridSettings::new(cells).refinement;
         let leaves = find(kernel, &Stop::default(), &lattice, refinement, &mut Counters::default()).unwrap();
         let mut counters = Counters::default();

@@ -7,7 +7,7 @@ mod tree;
 use crate::paper::lattice::Lattice;
 use crate::paper::lockstep::Lockstep;
 use crate::paper::stretch::{Spacing, Stretch, Stretches};
-use crate::{Counters, GridError, GridSettings, Outcome, Ray, Region, Surface, Tracer, Workspace};
+use crate::{Counters, GridError, GridSettings, Kernel, Outcome, Ray, Region, Surface, Tracer, Workspace};
 use tree::{Tree, TreeWalk};
 
 /// The paper's closing idea: the sign test of [`Grid`](crate::Grid), made on blocks of cells first.
@@ -41,7 +41,7 @@ impl Octree {
     /// compile F − C or its gradient, or the surface's [`Stop`](crate::Stop) is requested.
     pub fn new(surface: &Surface, region: Region, settings: &GridSettings) -> Result<Self, GridError> {
         settings.check()?;
-        let values = surface.values()?;
+        let values = surface.over_points(Kernel::Values)?;
         let lattice = Lattice::new(&region, settings.cells);
         let mut preprocessing = Counters::default();
         let leaves =
