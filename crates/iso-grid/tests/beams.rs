@@ -8,7 +8,7 @@ use iso_expr::{Ast, Interpreter, Program};
 use iso_grid::{Certified, Hit, Outcome, Raster, Ray, Region, Span, Surface, Tile, Tracer, Workspace};
 
 /// Formulas, half sides of their regions, and what they are tried for.
-const SCENES: [(&str, f64, &str); 40] = [
+const SCENES: [(&str, f64, &str); 42] = [
     ("(x^2+y^2-1)^2 + 4z^2 + 0.5x - 0.2", 1.5, "a classic"),
     ("x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8", 2.6, "parts in front of each other"),
     ("sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)", 5.0, "cut by the region's faces"),
@@ -52,6 +52,8 @@ const SCENES: [(&str, f64, &str); 40] = [
     ("min(z - sin(9x)sin(9y)/9, x^2+y^2+z^2-0.4, y+0.5)", 1.2, "a ball on wavy ground"),
     ("min(x^2+y^2-z-0.3, 2-exp(x)-exp(z)+y^2, x^6+y^6+z^6-0.1)", 1.3, "seams of faces that bend both ways"),
     ("max(min(x+y, z-0.3), min(x-y, -z-0.3), x^2+y^2+z^2-1)", 1.4, "edges and seams that meet"),
+    ("max(min(-1, sqrt(0.3 - z)), x)", 1.0, "undefined where a part that decides nothing is"),
+    ("min(max(1, y - 2, asin(z + 0.4)), x^2+y^2+z^2-0.7)", 1.0, "the same of a union"),
     (SHARP, 1.3, "a sharp blend, whose exponentials underflow not far from the surface"),
 ];
 

@@ -3,7 +3,7 @@
 //! A body may be put together by minima and maxima in any order. On a part most of its functions are of one sign, and what is left
 //! of the others is often a minimum or a maximum alone.
 
-use iso_expr::Extreme;
+use iso_expr::{Decoration, Extreme};
 
 use super::bend::{Bend, Course};
 use super::bows::{Bow, ways};
@@ -127,6 +127,10 @@ impl Subdivision<'_> {
         let bounds = self.beam(part.beam).bounds_in_space(part.form.reach);
         let both = [(center, center), bounds];
         let [jet, over_all] = self.enclose_all(kernels, Kernel::GradientEnclosures, both)?;
+        if over_all[0].decoration < Decoration::Defined {
+            // Where one of its functions is undefined, it is so itself, whatever sign the others have.
+            return None;
+        }
         let jet = jet.map(|found| found.interval);
         if let Some(gradient) = Gradient::new(over_all) {
             let form = Form::new(self.beam(part.beam), part.form.reach, (t, center), jet[0], &gradient);
