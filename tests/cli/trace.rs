@@ -98,6 +98,18 @@ fn the_region_bounds_the_search() {
 }
 
 #[test]
+fn a_ray_that_misses_the_box_is_not_said_to_miss_the_surface() {
+    let case = Case::new();
+    let run = |flags: &[&str]| case.run(&[&["trace", "z = 0", "--ray", "2.5,0,5,0,0,-1"], flags].concat());
+    run(&[])
+        .exits(0)
+        .mentions("note: the surface goes on outside of the box in which rays are followed, x -2..2");
+    run(&["--box", "-2,2"]).exits(0).reports("");
+    let through = case.run(&["trace", "z = 0", "--ray", "1,0,5,0,0,-1"]).exits(0).reports("");
+    assert_eq!(rows(&through.stdout())[0].0, "hit");
+}
+
+#[test]
 fn rays_that_are_none_are_refused() {
     let case = Case::new();
     case.file("still.csv", "ox,oy,oz,dx,dy,dz\n0,0,0,1,0,0\n0,0,0,0,0,0\n");

@@ -51,11 +51,6 @@ pub(crate) fn method(flags: &MethodFlags) -> Result<Method, Failure> {
     }
 }
 
-/// The region that was asked for, else one that fits the surface.
-pub(crate) fn region(given: Option<Region>, surface: &Surface) -> Result<Region, CompileError> {
-    Ok(fitted_unless(given, surface)?.region)
-}
-
 /// The region that was given, else one that fits the surface.
 pub(crate) fn fitted_unless(given: Option<Region>, surface: &Surface) -> Result<Fitted, CompileError> {
     given.map_or_else(|| fitted(surface), |region| Ok(region.into()))

@@ -1,4 +1,4 @@
-//! What a picture does not show by itself: why nothing is seen, what is cut off, what is not known.
+//! What results do not show by themselves: why nothing is seen, what is cut off, what is not known.
 
 use iso_grid::{Fitted, Region, Surface, Workspace};
 use iso_render::StatusCounts;
@@ -29,10 +29,7 @@ impl Drawn<'_> {
         if hit + touch + undecided + unfinished == 0 {
             notes.push(format!("nothing is seen: {}", self.why_nothing()?));
         } else if self.fitted.goes_on {
-            let shown = extent(&self.fitted.region);
-            notes.push(format!(
-                "the surface goes on outside of the box that is shown, {shown}: --box sets another"
-            ));
+            notes.push(goes_on_outside("that is shown", &self.fitted.region));
         }
         Ok(notes)
     }
@@ -63,6 +60,11 @@ impl Drawn<'_> {
         let reasons = "it may consist of points and curves, or lie where the camera does not look";
         Ok(format!("no ray meets the surface in the box, {shown}: {reasons}"))
     }
+}
+
+/// That the surface goes on outside of a region that was fitted, a box of which `role` says what it is for.
+pub(crate) fn goes_on_outside(role: &str, region: &Region) -> String {
+    format!("the surface goes on outside of the box {role}, {}: --box sets another", extent(region))
 }
 
 /// How far a region reaches along each axis, in three digits.

@@ -34,6 +34,8 @@ enum Problem {
     RepeatedColumn { column: String },
     #[error("column `{column}` is missing, for the row has only {given} of {expected} columns")]
     ShortRow { column: String, given: usize, expected: usize },
+    #[error("the row has {given} fields, but there are {expected} columns; numbers have points, not commas")]
+    LongRow { given: usize, expected: usize },
     #[error("column `{column}`: expected a number, found `{given}`")]
     NotANumber { column: String, given: String },
     #[error("{0}")]
@@ -101,6 +103,7 @@ pub(crate) fn read_from<const N: usize>(
             header = Some(Header::find(&fields, names).map_err(at)?);
             continue;
         };
+        header.check(&fields).map_err(at)?;
         for (column, values) in table.columns.iter_mut().enumerate() {
             values.push(header.number(&fields, column).map_err(at)?);
         }
@@ -156,6 +159,15 @@ impl<'a, const N: usize> Header<'a, N> {
             };
         }
         Ok(Self { names, places, width: fields.len() })
+    }
+
+    /// Fields without a column may be empty, as some programs end rows by a comma.
+    fn check(&self, fields: &[&[u8]]) -> Result<(), Problem> {
+        let without_column = fields.get(self.width..).unwrap_or_default();
+        if without_column.iter().all(|field| field.is_empty()) {
+            return Ok(());
+        }
+        Err(Problem::LongRow { given: fields.len(), expected: self.width })
     }
 
     fn number(&self, fields: &[&[u8]], column: usize) -> Result<f64, Problem> {
@@ -299,6 +311,10 @@ mod tests {
             error("x,y\n# comment\n\n1,2\n3,four"),
             "t.csv:5: column `y`: expected a number, found `four`"
         );
+        let too_long =
+            "t.csv:2: the row has 4 fields, but there are 2 columns; numbers have points, not commas";
+        assert_eq!(error("x,y\n1,5,2,3\n"), too_long);
+        assert_eq!(table("x,y\n1,2,\n", ["x", "y"]), Ok([vec![1.0], vec![2.0]]));
         assert!(error("x,\u{1b}[2J").ends_with("are x,\u{fffd}[2J"), "{}", error("x,\u{1b}[2J"));
         let long = format!("x,y\n{},0\n", "9e".repeat(60));
         assert!(error(&long).ends_with("9e9e…`"), "{}", error(&long));

@@ -5,7 +5,7 @@ mod sphere;
 use std::ops::Range;
 
 use glam::{DVec3, IVec3};
-use iso_expr::{BoxKernel, CompileError, Decorated, Decoration};
+use iso_expr::{BoxKernel, CompileError, Decorated, Decoration, Interval};
 
 use crate::batch::BoxBatch;
 use crate::{Kernel, Region, Surface, Workspace};
@@ -233,7 +233,7 @@ impl Region {
             }
             let step = cells.len().div_ceil(MOST_TO_PROVE).max(1);
             let some: Vec<_> = cells.iter().copied().step_by(step).collect();
-            if some.chunks(64).any(|cells| self.changes_sign(cells, 1 << depth, kernel, workspace)) {
+            if some.chunks(64).any(|cells| self.holds_points(cells, 1 << depth, kernel, workspace)) {
                 return true;
             }
             if cells.len() > MOST_TO_PROVE || is_stopped() {
@@ -243,8 +243,9 @@ impl Region {
         false
     }
 
-    /// Whether F, continuous on one of `cells`, of which `count` fill the region along each axis, has both signs at its corners.
-    fn changes_sign(
+    /// Whether F, continuous on one of `cells`, of which `count` fill the region along each axis, has both signs at its corners, or is zero
+    /// at one that is not in the cube before.
+    fn holds_points(
         &self,
         cells: &[IVec3],
         count: i32,
@@ -257,11 +258,16 @@ impl Region {
             std::iter::once(self.cell(cell, count)).chain(corners)
         });
         let found = enclose(kernel, workspace, boxes);
-        (0..found.len()).step_by(1 + OCTANTS.len()).any(|cell| {
-            let mut corners = (cell + 1..=cell + OCTANTS.len()).map(|corner| found.interval(0, corner));
-            found.decorated(0, cell).decoration >= Decoration::Continuous
-                && corners.clone().any(|corner| corner.hi < 0.0)
-                && corners.any(|corner| corner.lo > 0.0)
+        let places = (0..found.len()).step_by(1 + OCTANTS.len());
+        places.zip(cells).any(|(place, cell)| {
+            let corners = OCTANTS.into_iter().zip(place + 1..);
+            let mut corners = corners.map(|(octant, corner)| (*cell + octant, found.interval(0, corner)));
+            found.decorated(0, place).decoration >= Decoration::Continuous
+                && (corners.clone().any(|(_, value)| value.hi < 0.0)
+                    && corners.clone().any(|(_, value)| value.lo > 0.0)
+                    || corners.any(|(corner, value)| {
+                        value == Interval::point(0.0) && !is_in_cube_before(corner, count)
+                    }))
         })
     }
 
@@ -321,6 +327,13 @@ fn enclose<'w>(
     batch
 }
 
+/// Whether a corner of cells, of which `count` fill a cube along each axis, lies in the cube before it, or on its faces.
+fn is_in_cube_before(corner: IVec3, count: i32) -> bool {
+    let halves = count >> HALVINGS;
+    let before = halves * BEFORE.start..=halves * BEFORE.end;
+    corner.to_array().iter().all(|along| before.contains(along))
+}
+
 fn cube(half_side: f64) -> Region {
     Region { min: DVec3::splat(-half_side), max: DVec3::splat(half_side) }
 }
@@ -333,9 +346,13 @@ mod tests {
 
     use super::*;
 
-    fn around(formula: &str) -> Fitted {
+    fn surface(formula: &str) -> Surface {
         let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
-        Fitted::around(&Surface::new(Arc::new(Interpreter), program), &mut Workspace::default()).unwrap()
+        Surface::new(Arc::new(Interpreter), program)
+    }
+
+    fn around(formula: &str) -> Fitted {
+        Fitted::around(&surface(formula), &mut Workspace::default()).unwrap()
     }
 
     fn fitted(formula: &str) -> Region {
@@ -377,12 +394,33 @@ mod tests {
     fn a_surface_that_goes_on_elsewhere_is_said_to() {
         let oval = around("y^2 + z^2 = x*(x - 1)*(x - 5)");
         assert!(oval.goes_on && oval.region.max().x < 1.2, "{oval:?}");
-        for formula in ["sin(x) = cos(y) + sin(z)", "x^2 + y^2 = 9", "z = x*y", "x = 10"] {
+        let through_corners = ["z", "x = 1", "x = y", "max(x, y)"];
+        let others = ["sin(x) = cos(y) + sin(z)", "x^2 + y^2 = 9", "z = x*y", "x = 10"];
+        for formula in others.into_iter().chain(through_corners) {
             assert!(around(formula).goes_on, "{formula}");
         }
-        for formula in ["x^2 + y^2 + z^2 = 1", "x^4 + y^4 + z^4 = 3*x^2 + 7", "x^2 + y^2 + z^2 = -1"] {
+        for formula in [
+            "x^2 + y^2 + z^2 = 1",
+            "x^2 + y^2 + z^2 = 4",
+            "max(abs(x), abs(y), abs(z)) = 2",
+            "x^4 + y^4 + z^4 = 3*x^2 + 7",
+            "x^2 + y^2 + z^2 = -1",
+        ] {
             assert!(!around(formula).goes_on, "{formula}");
         }
+    }
+
+    #[test]
+    fn corners_of_the_cube_before_are_no_points_outside_of_it() {
+        let mut workspace = Workspace::default();
+        let mut holds_points = |formula| {
+            let surface = surface(formula);
+            let kernel = &**surface.over_boxes(Kernel::ValueEnclosures).unwrap();
+            // From (2, 0, 0) to (3, 1, 1), beside the cube of half side 2.
+            cube(8.0).holds_points(&[IVec3::new(10, 8, 8)], 16, kernel, &mut workspace)
+        };
+        assert!(holds_points("x = 3") && holds_points("x = 2.5"));
+        assert!(!holds_points("x = 2") && !holds_points("x^2 + y^2 + z^2 = 4"));
     }
 
     /// Intervals are wide here, so that all cells stay open, far from the sphere too; and a pole is no surface.

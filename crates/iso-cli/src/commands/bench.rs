@@ -15,14 +15,15 @@ use crate::failure::Failure;
 use crate::flags::BenchFlags;
 use crate::formula::{minus_level, understand};
 use crate::measurement::{Subject, in_turns};
-use crate::method::{method, region};
+use crate::method::{fitted_unless, method};
 use crate::output::to_standard_output;
 
 /// Measures both engines.
 pub(crate) fn run(flags: BenchFlags) -> Result<(), Failure> {
     let formula = understand(&flags.formula)?;
     let program = minus_level(&formula, flags.level.level)?.simplified();
-    let region = region(flags.method.region.region, &Surface::new(Arc::new(Interpreter), program.clone()))?;
+    let surface = Surface::new(Arc::new(Interpreter), program.clone());
+    let region = fitted_unless(flags.method.region.region, &surface)?.region;
     let size = flags.measurement.size;
     let camera = Camera::new(View::DEFAULT, Projection::DEFAULT, &region, size)?;
     let bench = Bench {

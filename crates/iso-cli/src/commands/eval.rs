@@ -20,11 +20,11 @@ const BATCH: usize = 4096;
 /// Evaluates a formula at points, or over boxes.
 pub(crate) fn run(flags: EvalFlags) -> Result<(), Failure> {
     let places = &flags.places;
-    let destination = Destination::new(flags.table.output.clone())?;
+    let form = flags.table.form();
+    let destination = Destination::new(flags.table.output)?;
     let value = minus_level(&understand(&flags.formula)?, flags.level.level)?.simplified();
     let program = if places.gradient { value.with_gradient().simplified() } else { value };
     let engine = engine(flags.engine.engine)?;
-    let form = flags.table.form();
     if let Some(path) = &places.boxes {
         return over_boxes(engine, &program, &read_boxes(path)?, &destination, form);
     }

@@ -1,5 +1,6 @@
 //! `iso trace`: rays, followed to the surface.
 
+use std::io::{self, Write};
 use std::iter;
 use std::path::Path;
 
@@ -14,7 +15,8 @@ use crate::failure::Failure;
 use crate::flags::TraceFlags;
 use crate::formula::{minus_level, understand};
 use crate::interruption::Interruption;
-use crate::method::{method, region};
+use crate::method::{fitted_unless, method};
+use crate::notes::goes_on_outside;
 use crate::output::Destination;
 use crate::pictures::status_name;
 use crate::plan::plan_of_rays;
@@ -27,28 +29,34 @@ const BATCH: usize = 1024;
 pub(crate) fn run(flags: TraceFlags) -> Result<(), Failure> {
     let interruption = Interruption::new(&flags.limit);
     let method = method(&flags.method)?;
-    let destination = Destination::new(flags.table.output.clone())?;
+    let form = flags.table.form();
+    let destination = Destination::new(flags.table.output)?;
     let formula = understand(&flags.formula)?;
     let program = minus_level(&formula, flags.level.level)?.simplified();
     let rays = flags.rays.rays.as_deref().map_or(Ok(flags.rays.ray), read_rays)?;
     let plan = plan_of_rays(method, &program, flags.method.region.region.is_some());
     let surface = Surface::new(engine(flags.engine.engine)?, program).stopped_by(interruption.stop());
     plan.compile(&surface)?;
-    let followed = threads(&flags.threads)?.install(|| {
-        let region = region(flags.method.region.region, &surface)?;
-        let tracer = plan.tracer(&surface, region)?;
+    let (fitted, followed) = threads(&flags.threads)?.install(|| {
+        let fitted = fitted_unless(flags.method.region.region, &surface)?;
+        let tracer = plan.tracer(&surface, fitted.region)?;
         interruption.begin_work();
-        Ok::<_, Failure>(follow(plan.followed(&surface), tracer.as_ref(), &rays)?)
+        Ok::<_, Failure>((fitted, follow(plan.followed(&surface), tracer.as_ref(), &rays)?))
     })?;
     let unfinished = followed.iter().filter(|end| end.is_none()).count() as u64;
     let all = rays.len() as u64;
     interruption.check_begun(unfinished, all)?;
     destination.write(|writer| {
-        let mut table = TableWriter::new(writer, COLUMNS.map(str::to_owned).to_vec(), flags.table.form())?;
+        let mut table = TableWriter::new(writer, COLUMNS.map(str::to_owned).to_vec(), form)?;
         let mut rows = rays.iter().zip(&followed);
         rows.try_for_each(|(ray, end)| table.row(fields(ray, end.as_ref())))?;
         table.finish()
     })?;
+    if fitted.goes_on && followed.iter().flatten().any(|(outcome, _)| *outcome == Outcome::Miss) {
+        // A note that nobody can read is no failure.
+        let _ =
+            writeln!(io::stderr(), "note: {}", goes_on_outside("in which rays are followed", &fitted.region));
+    }
     interruption.check_done(unfinished, all, "rays")
 }
 

@@ -10,8 +10,8 @@ use crate::values;
 
 /// Evaluate a formula at points or over boxes
 ///
-/// The value of an equation is its left side minus its right side, and that of an expression is less by `--level`. Numbers are written with the digits that read back to
-/// the same float.
+/// The value of an equation is its left side minus its right side, and that of an expression is less by `--level`. Numbers
+/// are written with the digits that read back to the same float.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, group = ArgGroup::new("places").required(true))]
 pub(crate) struct EvalFlags {
