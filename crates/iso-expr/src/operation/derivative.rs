@@ -140,18 +140,26 @@ pub(super) fn multiply(chain: &mut Chain<'_>) -> Option<NodeId> {
     chain.sum(left, right)
 }
 
-/// (a′ − (a/b)·b′) / b, or −(a/b)·(b′/b) for a constant over a sum of exponentials, of which b′/b has shares
+/// (a′ − (a/b)·b′) / b. Where a′ is zero, −(a/b²)·b′, of which the first factor is the same along all axes; or −(a/b)·(b′/b) over a sum of
+/// exponentials, of which b′/b has shares.
 pub(super) fn divide(chain: &mut Chain<'_>) -> Option<NodeId> {
-    let ([_, b, _], [da, db, _]) = (chain.operands, chain.derivatives);
-    if let (None, Some(db)) = (da, db)
-        && chain.program.is_sum_of_exponentials(b)
-    {
-        let relative = chain.relative(db, b);
-        let growth = chain.product(chain.result, Some(relative));
+    let ([a, b, _], [da, db, _]) = (chain.operands, chain.derivatives);
+    let quotient = chain.result;
+    let Some(da) = da else {
+        let growth = if chain.program.is_sum_of_exponentials(b) {
+            let relative = chain.relative(db?, b);
+            chain.product(quotient, Some(relative))
+        } else if chain.program.node(a) == Node::Constant(Constant::exact(1.0)) {
+            let square = chain.square(quotient);
+            chain.product(square, db)
+        } else {
+            let growth = chain.apply(Operation::Divide, &[quotient, b]);
+            chain.product(growth, db)
+        };
         return chain.negated(growth);
-    }
-    let correction = chain.product(chain.result, db);
-    let numerator = chain.difference(da, correction)?;
+    };
+    let correction = chain.product(quotient, db);
+    let numerator = chain.difference(Some(da), correction)?;
     Some(chain.apply(Operation::Divide, &[numerator, b]))
 }
 

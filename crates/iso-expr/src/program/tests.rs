@@ -79,6 +79,20 @@ fn the_gradient_of_a_polynomial_is_minimal() {
 }
 
 #[test]
+fn the_gradient_of_a_reciprocal_divides_no_more_often_than_that_does() {
+    let gradient = |formula| Ast::parse(formula).unwrap().lower(&[]).unwrap().program().with_gradient();
+    let divisions = |formula| {
+        let program = gradient(formula).simplified();
+        let divides = |node: &&Node| matches!(node, Node::Apply(Operation::Divide, _));
+        program.nodes().iter().filter(divides).count()
+    };
+    assert_eq!(divisions("1/(x^2 + y^2 + z^2)"), 1);
+    assert_eq!(divisions("3/(x^2 + y^2 + z^2)"), 2);
+    // x over that, 1 over it, and x over its square.
+    assert_eq!(divisions("x/(y^2 + z^2)"), 3);
+}
+
+#[test]
 fn second_derivatives_are_those_of_calculus() {
     let formula = Ast::parse("x^2 y + 3y z^2 + exp(x) - sin(y z)").unwrap().lower(&[]).unwrap();
     let hessian = formula.minus_level(0.0).with_hessian();
