@@ -30,6 +30,17 @@ fn gradients_stand_beside_the_values() {
 }
 
 #[test]
+fn results_do_not_take_the_place_of_the_points() {
+    let case = Case::new();
+    let points = "x,y,z\n1,2,3\n";
+    case.file("points.csv", points);
+    case.run(&["eval", "x", "--points", "points.csv", "-o", "./points.csv"]).exits(2).reports(
+        "error: the results would take the place of points.csv, which is read\n  help: give --output another name\n",
+    );
+    assert_eq!(case.content("points.csv"), points.as_bytes());
+}
+
+#[test]
 fn points_can_be_given_without_a_table() {
     let case = Case::new();
     for engine in ENGINES {

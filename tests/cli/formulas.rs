@@ -113,6 +113,8 @@ fn habits_from_elsewhere_are_answered() {
         ("\\frac{x}{2}", "`\\` has no meaning in a formula"),
         ("x = 1 // a plane", "comments begin with `#`"),
         ("x = 30°", "angles are in radians"),
+        ("sin^-1(x) = y", "the inverse function is `asin(x)`"),
+        ("2∗x = y", "write `*`"),
         ("ball.txt", "there is a file of this name: write `@ball.txt` to read it"),
         ("@", "write `@formula.txt`"),
     ] {
@@ -146,6 +148,18 @@ fn huge_wrong_formulas_have_small_reports() {
     for name in ["@parentheses.txt", "@sum.txt", "@megabyte.txt"] {
         let run = render(&case, name, &[]).exits(2);
         assert!(run.stderr().len() < 1000, "{name}: {} bytes", run.stderr().len());
+    }
+}
+
+#[test]
+fn formulas_are_read_no_further_than_they_may_be_long() {
+    let case = Case::new();
+    // A character of two bytes stands where reading ends.
+    let text = format!("{}{}", "x".repeat((1 << 20) + 3), "π".repeat(1 << 20));
+    case.file("long.txt", &text);
+    for (formula, name) in [("-", "standard input"), ("@long.txt", "long.txt")] {
+        let run = case.run_with_input(&["explain", formula], text.as_bytes()).exits(2);
+        run.mentions("the formula is longer than 1048576 bytes").mentions(name);
     }
 }
 

@@ -106,6 +106,7 @@ fn notes_say_what_a_picture_does_not_show() {
         (SPHERE, &["--box", "-0.5,0.5"], "no point of the box, x -0.5..0.5"),
         ("sqrt(-1 - x^2) = z", &[], "F is defined nowhere in the box"),
         ("2 = 1", &[], "does not depend on x, y or z"),
+        ("1 = 1", &[], "all of the box is the surface"),
         (SPHERE, &away, "the camera looks past the box"),
         ("(x - 0.1)^2 + y^2 + z^2 = 0", &["--box", "-2,2"], "it may consist of points and curves"),
         ("x^2 + y^2 = 1", &[], "the surface goes on outside of the box that is shown, x -1.09..1.09"),
@@ -136,6 +137,39 @@ fn the_report_has_its_keys() {
         assert_eq!(json["counters"]["rays"], 48 * 32);
         let kernels = if method == "certified" { 5 } else { 3 };
         assert_eq!(json["plan"]["kernels_compiled"], kernels, "{method}");
+    }
+}
+
+#[test]
+fn the_report_says_where_the_rays_are() {
+    let case = Case::new();
+    for more in [&["--fov", "40"][..], &["--ortho"], &["--ortho", "--eye", "1,2,3"]] {
+        let flags = [&["--json", "--points", "points.csv"], more].concat();
+        let json = render(&case, SPHERE, &flags).exits(0).reports("").json();
+        let camera = &json["camera"];
+        let vector = |name: &str| [0, 1, 2].map(|axis| camera[name][axis].as_f64().unwrap());
+        let (right, down) = (vector("right"), vector("down"));
+        let at = |from: [f64; 3], [a, b]: [f64; 2]| {
+            [0, 1, 2].map(|axis| from[axis] + a * right[axis] + b * down[axis])
+        };
+        let table = String::from_utf8(case.content("points.csv")).unwrap();
+        let mut hits = 0;
+        for line in table.lines().filter(|line| line.contains("hit")) {
+            let number = |column: usize| line.split(',').nth(column).unwrap().parse::<f64>().unwrap();
+            let place = [number(0) + 0.5 - 24.0, number(1) + 0.5 - 16.0];
+            let (origin, direction) = match camera["projection"].as_str().unwrap() {
+                "orthographic" => (at(vector("middle"), place), vector("direction")),
+                "perspective" => (vector("eye"), at(vector("forward"), place)),
+                other => panic!("{other}"),
+            };
+            let length = direction.iter().map(|part| part * part).sum::<f64>().sqrt();
+            for axis in 0..3 {
+                let expected = origin[axis] + number(3) * direction[axis] / length;
+                assert!((expected - number(4 + axis)).abs() < 1e-12, "{more:?}: {line}");
+            }
+            hits += 1;
+        }
+        assert!(hits > 50, "{more:?}: {hits} hits");
     }
 }
 

@@ -84,6 +84,21 @@ fn bad_usage_exits_with_2() {
 }
 
 #[test]
+fn a_formula_without_a_command_is_told_which() {
+    let case = Case::new();
+    case.run(&["x^2 + y^2 + z^2 = 1"])
+        .exits(2)
+        .mentions("tip: to draw a formula, write 'iso render FORMULA'");
+    case.run(&["rendr", "x"]).exits(2).mentions("'render'");
+}
+
+#[test]
+fn pages_are_written_to_files() {
+    let run = Case::new().run(&["stress", "--html", "-"]);
+    run.exits(2).reports("error: `-` is standard output, where this cannot go\n  help: name a file\n");
+}
+
+#[test]
 fn settings_of_another_method_are_refused() {
     Case::new().run(&["render", "x", "--grid", "30"]).exits(2).reports(
         "error: --grid has no meaning for the method certified\n  help: leave it out, or choose --method grid or octree\n",

@@ -2,10 +2,11 @@
 
 use std::borrow::Cow;
 use std::ffi::OsStr;
-use std::fs;
+use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
+use iso_expr::limits::{LARGEST_MODEL, LARGEST_TEXT};
 use iso_expr::{Ast, Formula, FormulaError, Program};
 
 use crate::failure::Failure;
@@ -40,7 +41,7 @@ impl Source {
     /// Takes the argument itself, or reads the file of `@file` or `model.vm`, or standard input for `-`.
     pub(crate) fn read(argument: &OsStr) -> Result<Self, Failure> {
         let (name, read) = match argument.as_encoded_bytes() {
-            b"-" => ("standard input".to_owned(), read_standard_input()),
+            b"-" => ("standard input".to_owned(), read_up_to(LARGEST_TEXT, io::stdin().lock())),
             b"@" => return Err(Failure::usage("`@` names no file", "write `@formula.txt`")),
             [b'@', ..] => read_file(&argument.to_string_lossy()[1..]),
             _ if is_model(&argument.to_string_lossy()) => read_file(&argument.to_string_lossy()),
@@ -92,12 +93,22 @@ impl Source {
 
 /// The file's name and what is in it.
 fn read_file(path: &str) -> (String, io::Result<Vec<u8>>) {
-    (path.to_owned(), fs::read(path))
+    let largest = if is_model(path) { LARGEST_MODEL } else { LARGEST_TEXT };
+    (path.to_owned(), File::open(path).and_then(|file| read_up_to(largest, file)))
 }
 
-fn read_standard_input() -> io::Result<Vec<u8>> {
+/// What a source holds, or so much of it that it is seen to be longer than the largest that is allowed.
+fn read_up_to(largest: usize, source: impl Read) -> io::Result<Vec<u8>> {
+    /// The last character may be cut, and then is left out.
+    const LONGEST_CHARACTER: usize = 4;
     let mut content = Vec::new();
-    io::stdin().lock().read_to_end(&mut content)?;
+    source.take((largest + LONGEST_CHARACTER) as u64).read_to_end(&mut content)?;
+    match str::from_utf8(&content) {
+        Err(error) if content.len() > largest && error.error_len().is_none() => {
+            content.truncate(error.valid_up_to());
+        }
+        _ => {}
+    }
     Ok(content)
 }
 

@@ -41,7 +41,8 @@ use failure::Failure;
 use flags::{Command, Flags};
 
 fn main() -> ExitCode {
-    match run(Flags::parse().command) {
+    let flags = Flags::try_parse().unwrap_or_else(|error| flags::with_tip(error).exit());
+    match run(flags.command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) if failure.is_closed_pipe() => ExitCode::SUCCESS,
         Err(failure) => {

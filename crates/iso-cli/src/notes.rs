@@ -28,6 +28,8 @@ impl Drawn<'_> {
         }
         if hit + touch + undecided + unfinished == 0 {
             notes.push(format!("nothing is seen: {}", self.why_nothing()?));
+        } else if self.surface.program().arguments() == 0 {
+            notes.push("F − C does not depend on x, y or z: all of the box is the surface".to_owned());
         } else if self.fitted.goes_on {
             notes.push(goes_on_outside("that is shown", &self.fitted.region));
         }

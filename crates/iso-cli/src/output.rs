@@ -48,6 +48,14 @@ impl Destination {
         }
     }
 
+    /// That it does not take the place of a file from which the results are made.
+    pub(crate) fn spares(&self, source: &Path) -> Result<(), Failure> {
+        match self {
+            Self::File(file) => file.spares(source),
+            Self::Standard => Ok(()),
+        }
+    }
+
     /// Writes what `fill` writes.
     pub(crate) fn write(&self, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
         match self {
@@ -82,12 +90,19 @@ enum Place {
 impl OutputFile {
     /// Makes sure that `path` can be written, so that nothing is computed in vain. Leaves no trace there.
     pub(crate) fn new(path: PathBuf) -> Result<Self, Failure> {
+        if is_standard_output(&path) {
+            return Err(Failure::usage("`-` is standard output, where this cannot go", "name a file"));
+        }
         let place = match fs::metadata(&path) {
             Ok(found) if found.is_dir() => {
                 let error = io::Error::new(io::ErrorKind::IsADirectory, "it is a directory");
                 return Err(Failure::write(&path, error));
             }
             Ok(found) if !found.is_file() => Place::Stream,
+            Ok(found) if found.permissions().readonly() => {
+                let error = io::Error::new(io::ErrorKind::PermissionDenied, "it may only be read");
+                return Err(Failure::write(&path, error));
+            }
             Ok(_) => Place::Replaced(path.canonicalize().map_err(|error| Failure::write(&path, error))?),
             Err(_) => Place::Replaced(resolved(&path)),
         };
@@ -101,6 +116,18 @@ impl OutputFile {
     /// The path as given.
     pub(crate) fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// That it does not take the place of a file from which the results are made.
+    pub(crate) fn spares(&self, source: &Path) -> Result<(), Failure> {
+        match &self.place {
+            Place::Replaced(target) if source.canonicalize().is_ok_and(|source| source == *target) => {
+                let problem =
+                    format!("the results would take the place of {}, which is read", source.display());
+                Err(Failure::usage(problem, "give --output another name"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Whether what is written to one is lost when the other is written.
@@ -127,6 +154,9 @@ impl OutputFile {
             Place::Replaced(target) => {
                 let _held = hold_unfinished_file();
                 let temporary = temporary_beside(target).map_err(unwritable)?;
+                if let Ok(before) = fs::metadata(target) {
+                    temporary.as_file().set_permissions(before.permissions()).map_err(unwritable)?;
+                }
                 filled(temporary.reopen().map_err(unwritable)?)?;
                 temporary.persist(target).map_err(|error| unwritable(error.error))?;
                 Ok(())
@@ -208,6 +238,34 @@ mod tests {
         assert!(OutputFile::new(folder.path().join("missing/out.csv")).is_err());
         assert!(OutputFile::new(folder.path().join("out.csv")).is_ok());
         assert!(names(folder.path()).is_empty());
+    }
+
+    #[test]
+    fn files_that_may_only_be_read_or_are_read_stay() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.csv");
+        fs::write(&path, "before").unwrap();
+        let file = OutputFile::new(path.clone()).unwrap();
+        assert!(file.spares(&folder.path().join("../").join(folder.path()).join("out.csv")).is_err());
+        assert!(file.spares(&folder.path().join("in.csv")).is_ok());
+        let mut permissions = fs::metadata(&path).unwrap().permissions();
+        permissions.set_readonly(true);
+        fs::set_permissions(&path, permissions).unwrap();
+        let error = OutputFile::new(path.clone()).unwrap_err();
+        assert!(error.to_string().ends_with("it may only be read"), "{error}");
+        assert_eq!(fs::read_to_string(&path).unwrap(), "before");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_keeps_its_permissions() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.csv");
+        fs::write(&path, "before").unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).unwrap();
+        OutputFile::new(path.clone()).unwrap().write(|writer| write!(writer, "after")).unwrap();
+        assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o600);
     }
 
     #[cfg(unix)]

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use iso_grid::Counters;
+use iso_grid::{Counters, Raster};
 use iso_render::StatusCounts;
 use serde::Serialize;
 
@@ -26,6 +26,8 @@ pub(crate) struct Summary {
     pub(crate) box_min: [f64; 3],
     /// The upper corner of the box.
     pub(crate) box_max: [f64; 3],
+    /// From where it is seen.
+    pub(crate) camera: CameraReport,
     /// The method of intersection.
     pub(crate) method: &'static str,
     /// The engine that evaluated the formula.
@@ -46,6 +48,36 @@ pub(crate) struct Summary {
     pub(crate) milliseconds: Phases,
     /// What the picture does not show by itself, for people.
     pub(crate) notes: Vec<String>,
+}
+
+/// From where a picture is seen: vectors from one drawn pixel to its right and to its lower neighbour, and what tells the ray through
+/// the middle of the picture.
+#[derive(Debug, Serialize)]
+#[serde(tag = "projection", rename_all = "lowercase")]
+pub(crate) enum CameraReport {
+    /// The ray `across` pixels to the right of the middle and `along` below it begins at middle + across·right + along·down.
+    Orthographic { middle: [f64; 3], direction: [f64; 3], right: [f64; 3], down: [f64; 3] },
+    /// It has the direction of forward + across·right + along·down.
+    Perspective { eye: [f64; 3], forward: [f64; 3], right: [f64; 3], down: [f64; 3] },
+}
+
+impl From<&Raster> for CameraReport {
+    fn from(raster: &Raster) -> Self {
+        match *raster {
+            Raster::Parallel { middle, right, down, direction } => Self::Orthographic {
+                middle: middle.to_array(),
+                direction: direction.to_array(),
+                right: right.to_array(),
+                down: down.to_array(),
+            },
+            Raster::Spreading { eye, forward, right, down } => Self::Perspective {
+                eye: eye.to_array(),
+                forward: forward.to_array(),
+                right: right.to_array(),
+                down: down.to_array(),
+            },
+        }
+    }
 }
 
 /// What a picture is in its sequence.

@@ -38,6 +38,8 @@ enum Problem {
     LongRow { given: usize, expected: usize },
     #[error("column `{column}`: expected a number, found `{given}`")]
     NotANumber { column: String, given: String },
+    #[error("the rows up to here are all that this machine's memory holds")]
+    TooLarge,
     #[error("{0}")]
     Meaningless(String),
 }
@@ -105,8 +107,10 @@ pub(crate) fn read_from<const N: usize>(
         };
         header.check(&fields).map_err(at)?;
         for (column, values) in table.columns.iter_mut().enumerate() {
+            values.try_reserve(1).map_err(|_| at(Problem::TooLarge))?;
             values.push(header.number(&fields, column).map_err(at)?);
         }
+        table.lines.try_reserve(1).map_err(|_| at(Problem::TooLarge))?;
         table.lines.push(line);
     }
     match header {

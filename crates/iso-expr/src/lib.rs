@@ -21,7 +21,7 @@ pub use constant::Constant;
 pub use engine::{BatchKernel, BoxKernel, CompileError, Engine, PointKernel, Scratch};
 pub use interpreter::Interpreter;
 pub use interval::{Decorated, Decoration, Extension, Interval};
-pub use language::{Ast, Formula, FormulaError, FormulaErrorKind, decode};
+pub use language::{Ast, Formula, FormulaError, FormulaErrorKind, decode, limits};
 pub use operation::{Chain, Operation, Value, by_squaring};
 pub use pieces::Pieces;
 pub use program::{Argument, Axis, Extreme, Node, NodeId, Program};

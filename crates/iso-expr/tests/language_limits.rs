@@ -95,8 +95,7 @@ fn long_formulas_are_refused_by_their_operations() {
 #[test]
 fn a_million_terms_are_too_long() {
     let text = (0..1_000_000).map(|term| format!("+{term}x")).collect::<String>();
-    let given = text.len();
-    assert_eq!(kind(text), FormulaErrorKind::TooLong { given, allowed: MEGABYTE });
+    assert_eq!(kind(text), FormulaErrorKind::TooLong { allowed: MEGABYTE });
     assert_eq!(run("#".to_owned() + &"c".repeat(MEGABYTE - 3) + "\nx"), Ok(()));
 }
 

@@ -140,6 +140,11 @@ impl Camera {
         Ok(Self { raster, middle: [0.5 * width, 0.5 * height] })
     }
 
+    /// The rays of the pictures that it takes, counted from the middle.
+    pub fn raster(&self) -> &Raster {
+        &self.raster
+    }
+
     /// The ray through the middle of a pixel. Its direction has length 1 up to rounding, so t is a distance.
     pub fn ray(&self, column: u32, row: u32) -> Ray {
         let [across, along] = self.offset(column, row);

@@ -22,6 +22,7 @@ pub(crate) fn run(flags: EvalFlags) -> Result<(), Failure> {
     let places = &flags.places;
     let form = flags.table.form();
     let destination = Destination::new(flags.table.output)?;
+    places.boxes.iter().chain(&places.points).try_for_each(|source| destination.spares(source))?;
     let value = minus_level(&understand(&flags.formula)?, flags.level.level)?.simplified();
     let program = if places.gradient { value.with_gradient().simplified() } else { value };
     let engine = engine(flags.engine.engine)?;

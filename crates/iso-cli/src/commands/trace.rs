@@ -31,6 +31,7 @@ pub(crate) fn run(flags: TraceFlags) -> Result<(), Failure> {
     let method = method(&flags.method)?;
     let form = flags.table.form();
     let destination = Destination::new(flags.table.output)?;
+    flags.rays.rays.iter().try_for_each(|source| destination.spares(source))?;
     let formula = understand(&flags.formula)?;
     let program = minus_level(&formula, flags.level.level)?.simplified();
     let rays = flags.rays.rays.as_deref().map_or(Ok(flags.rays.ray), read_rays)?;

@@ -37,6 +37,7 @@ pub(crate) use stress::StressFlags;
 pub(crate) use tables::TableFlags;
 pub(crate) use trace::TraceFlags;
 
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
@@ -97,6 +98,16 @@ Examples:
   iso completions bash > ~/.local/share/bash-completion/completions/iso
   iso completions zsh > ~/.zfunc/_iso
   iso completions fish > ~/.config/fish/completions/iso.fish";
+
+/// The error with what to do about it where a formula stands in place of a command.
+pub(crate) fn with_tip(mut error: clap::Error) -> clap::Error {
+    let has_tip = error.get(ContextKind::SuggestedSubcommand).is_some();
+    if error.kind() == ErrorKind::InvalidSubcommand && !has_tip {
+        let tip = "to draw a formula, write 'iso render FORMULA'".into();
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
+    }
+    error
+}
 
 #[cfg(test)]
 mod tests {

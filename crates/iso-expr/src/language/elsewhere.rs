@@ -2,7 +2,7 @@
 
 /// A call as it is known elsewhere, and what to write. `sqr` and the shapes whose names begin with `f_` are POV-Ray's (`functions.inc`),
 /// `length` is GLSL's.
-const CALLS: [(&str, &str); 21] = [
+const CALLS: [(&str, &str); 25] = [
     ("sqr(u)", "u^2"),
     ("cube(u)", "u^3"),
     ("square(u)", "u^2"),
@@ -19,6 +19,10 @@ const CALLS: [(&str, &str); 21] = [
     ("frac(u)", "fract(u)"),
     ("fmod(u, v)", "u - v*trunc(u/v)"),
     ("length(u, v, w)", "sqrt(u^2 + v^2 + w^2)"),
+    ("norm(u, v, w)", "sqrt(u^2 + v^2 + w^2)"),
+    ("sum(u, v)", "u + v"),
+    ("where(x > 0, u, v)", "if(x > 0, u, v)"),
+    ("iif(x > 0, u, v)", "if(x > 0, u, v)"),
     ("union(u, v)", "min(u, v)"),
     ("intersection(u, v)", "max(u, v)"),
     ("difference(u, v)", "max(u, -v)"),
@@ -26,10 +30,32 @@ const CALLS: [(&str, &str); 21] = [
     ("f_torus(x, y, z, a, b)", "hypot(hypot(x, z) - a, y) - b"),
 ];
 
+/// Functions that other programs have and no formula here gives.
+const SPECIAL: [&str; 10] =
+    ["erf", "erfc", "gamma", "tgamma", "lgamma", "beta", "zeta", "j0", "factorial", "noise"];
+
+/// Names of what is no number here.
+const NO_NUMBERS: [&str; 5] = ["inf", "infinity", "infty", "oo", "nan"];
+
+/// Libraries of functions, whose names precede those of the functions.
+const LIBRARIES: [&str; 4] = ["math", "np", "numpy", "std"];
+
 /// How to write what a function of this name gives elsewhere.
 pub(super) fn written_here(name: &str) -> Option<String> {
+    if SPECIAL.contains(&name) {
+        return Some(format!("there is no `{name}` here: formulas are made of elementary functions"));
+    }
     let named = |(call, _): &&(&str, &str)| call.split('(').next() == Some(name);
     CALLS.iter().find(named).map(|(call, here)| format!("`{call}` is written `{here}`"))
+}
+
+/// What to do about a name that stands elsewhere for something which is not here.
+pub(super) fn not_here(name: &str) -> Option<String> {
+    let name = name.to_lowercase();
+    if NO_NUMBERS.contains(&&*name) {
+        return Some("numbers are finite: write one that is large enough, such as `1e9`".to_owned());
+    }
+    LIBRARIES.contains(&&*name).then(|| format!("functions have no library before them: leave out `{name}.`"))
 }
 
 #[cfg(test)]
@@ -44,6 +70,14 @@ mod tests {
             Ast::parse(&format!("{define}{here} + x")).unwrap_or_else(|error| panic!("{here}: {error}"));
             let help = Ast::parse(&format!("{define}{call} + x")).unwrap_err().help.unwrap();
             assert!(help.contains(here), "{call}: {help}");
+        }
+        for (formula, expected) in [
+            ("erf(x) = y", "there is no `erf` here"),
+            ("x = Infinity", "numbers are finite"),
+            ("math.sin(x) = y", "leave out `math.`"),
+        ] {
+            let help = Ast::parse(formula).unwrap_err().help.unwrap();
+            assert!(help.contains(expected), "{formula}: {help}");
         }
     }
 }

@@ -52,10 +52,8 @@ pub enum FormulaErrorKind {
     #[error("there are definitions, but no formula that uses them")]
     MissingFormula,
     /// The text is longer than [`LARGEST_TEXT`](super::limits::LARGEST_TEXT).
-    #[error("the formula is {given} bytes long; {allowed} are allowed")]
+    #[error("the formula is longer than {allowed} bytes")]
     TooLong {
-        /// The length of the text in bytes.
-        given: usize,
         /// The limit.
         allowed: usize,
     },

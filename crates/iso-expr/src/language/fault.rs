@@ -49,7 +49,15 @@ pub(super) fn missing_arguments(item: &Item<'_>, next: &Item<'_>, pattern: Optio
         Kind::name | Kind::number | Kind::pi | Kind::tau => {
             format!("write `{name}({})`", shortened(next.text))
         }
-        Kind::power | Kind::superscript => format!("write the power after the arguments: `{name}(x)^2`"),
+        Kind::power | Kind::superscript => {
+            let inverse = match item.text {
+                "sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh" => {
+                    format!("; the inverse function is `a{name}(x)`")
+                }
+                _ => String::new(),
+            };
+            format!("write the power after the arguments: `{name}(x)^2`{inverse}")
+        }
         _ => format!("its arguments stand in parentheses: `{name}(…)`"),
     };
     FormulaError::new(FormulaErrorKind::MissingArguments { name }, item.span()).with_help(help)
@@ -103,14 +111,17 @@ pub(super) fn stray(item: &Item<'_>) -> FormulaError {
         '&' => Some(
             "write `and` between conditions; `max(F, G)` is where both F and G are negative, `min(F, G)` where one of them is",
         ),
-        '!' => Some("write `not`, or `!=` for inequality"),
+        '!' => Some("write `not`, or `!=` for inequality; there are no factorials but as products"),
         ':' => Some("write `:=` for a definition"),
         '.' => Some("a point stands in numbers only, as in `0.5`"),
         '\'' | '"' => Some("a formula is written without quotation marks"),
         '\\' => Some("LaTeX is not read: write `a/b`, `sqrt(a)`, `sin(a)`"),
         '∛' => Some("write `cbrt(a)`"),
         '∜' => Some("write `a^(1/4)`"),
-        '÷' => Some("write `/`"),
+        '÷' | '∕' => Some("write `/`"),
+        '∗' => Some("write `*`"),
+        '–' | '—' => Some("write `-`"),
+        '∞' => Some("numbers are finite: write one that is large enough, such as `1e9`"),
         '°' => Some("angles are in radians: write `*pi/180`"),
         '½' | '⅓' | '⅔' | '¼' | '¾' => Some("write fractions as `1/2`"),
         '₀'..='₉' => Some("write indices as digits: `x1`"),

@@ -29,9 +29,9 @@ impl Formula {
     /// # Errors
     /// When a line breaks the form, names what no line before it defines, or the model exceeds [`limits`].
     pub fn read_model(text: &str) -> Result<Self, FormulaError> {
-        let (given, allowed) = (text.len(), limits::LARGEST_MODEL);
-        if given > allowed {
-            return Err(FormulaError::new(FormulaErrorKind::TooLong { given, allowed }, allowed..allowed));
+        let allowed = limits::LARGEST_MODEL;
+        if text.len() > allowed {
+            return Err(FormulaError::new(FormulaErrorKind::TooLong { allowed }, allowed..allowed));
         }
         let mut model = Model { builder: Builder::default(), values: HashMap::new() };
         let mut last = None;

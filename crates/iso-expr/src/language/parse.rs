@@ -29,9 +29,9 @@ impl Ast {
     /// # Errors
     /// When the text breaks the rules of the language or its limits; see [`FormulaErrorKind`].
     pub fn parse(text: &str) -> Result<Self, FormulaError> {
-        let (given, allowed) = (text.len(), limits::LARGEST_TEXT);
-        if given > allowed {
-            return Err(FormulaError::new(FormulaErrorKind::TooLong { given, allowed }, allowed..allowed));
+        let allowed = limits::LARGEST_TEXT;
+        if text.len() > allowed {
+            return Err(FormulaError::new(FormulaErrorKind::TooLong { allowed }, allowed..allowed));
         }
         let (items, heads) = items(text);
         let scope = Scope::of_formula(&heads)?;

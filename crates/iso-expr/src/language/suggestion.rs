@@ -1,6 +1,6 @@
 //! What an unknown name may have been meant to say.
 
-use super::elsewhere::written_here;
+use super::elsewhere::{not_here, written_here};
 use super::scope::{Parameters, Scope};
 
 /// Longer names are no slips of the hand, and comparing them would take long.
@@ -24,7 +24,7 @@ pub(super) fn suggestion(
     let as_call = || functions_first(name, is_called, &values, &functions);
     as_case()
         .map(|other| format!("did you mean `{other}`?"))
-        .or_else(|| is_called.then(|| written_here(name)).flatten())
+        .or_else(|| if is_called { written_here(name) } else { not_here(name) })
         .or_else(|| as_product().or_else(as_call).map(|text| format!("did you mean `{text}`?")))
         .or_else(|| nearest(name, known.iter().copied()).map(|other| format!("did you mean `{other}`?")))
 }

@@ -214,6 +214,7 @@ impl Request {
             height: picture.size.height(),
             box_min: region.min().to_array(),
             box_max: region.max().to_array(),
+            camera: camera.raster().into(),
             method: plan.method().name(),
             engine: self.engine.name(),
             threads: self.threads.current_num_threads(),
