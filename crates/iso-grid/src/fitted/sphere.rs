@@ -7,7 +7,7 @@ use glam::{DVec3, IVec3};
 use iso_expr::BoxKernel;
 use rustc_hash::{FxBuildHasher, FxHashMap};
 
-use super::{HALVINGS, OCTANTS, enclose, halved};
+use super::cells::{HALVINGS, OCTANTS, enclose, halved};
 use crate::{Region, Workspace};
 
 /// Cells outside of the sphere are halved this often to find more of the surface in them,

@@ -1,0 +1,158 @@
+//! Regions of surfaces of which it is known where they are.
+
+use std::sync::Arc;
+
+use iso_expr::{Ast, Interpreter};
+
+use super::*;
+
+fn surface(formula: &str) -> Surface {
+    let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
+    Surface::new(Arc::new(Interpreter), program)
+}
+
+fn around(formula: &str) -> Fitted {
+    Fitted::around(&surface(formula), &mut Workspace::default()).unwrap()
+}
+
+fn fitted(formula: &str) -> Region {
+    around(formula).region
+}
+
+/// The region holds the box from `min` to `max`, and is no more than a tenth of its longest side larger.
+fn assert_close(formula: &str, min: DVec3, max: DVec3) {
+    let region = fitted(formula);
+    let slack = 0.1 * (max - min).max_element();
+    assert!(
+        (min - region.min()).min_element() >= 0.0 && (region.max() - max).min_element() >= 0.0,
+        "{region:?}"
+    );
+    assert!((min - region.min()).max_element() <= slack, "{formula}: {region:?}");
+    assert!((region.max() - max).max_element() <= slack, "{formula}: {region:?}");
+}
+
+#[test]
+fn bounded_surfaces_of_any_size_are_framed() {
+    for radius in [1e-3, 0.1, 1.0, 1.999, 2.0, 3.0, 100.0, 500.0] {
+        let formula = format!("x^2 + y^2 + z^2 = {}", radius * radius);
+        assert_close(&formula, DVec3::splat(-radius), DVec3::splat(radius));
+    }
+    let ellipsoid = "(x - 5)^2 + (y/2)^2 + (z + 1)^2 = 1";
+    assert_close(ellipsoid, DVec3::new(4.0, -2.0, -2.0), DVec3::new(6.0, 2.0, 0.0));
+}
+
+#[test]
+fn parts_apart_from_each_other_are_framed_together() {
+    let two = "min(x^2 + y^2 + z^2 - 1, (x - 10)^2 + y^2 + z^2 - 1)";
+    assert_close(two, DVec3::splat(-1.0), DVec3::new(11.0, 1.0, 1.0));
+    let small = "(x^2 + y^2 + z^2 - 1)*((x - 3)^2 + y^2 + z^2 - 0.25)";
+    assert_close(small, DVec3::splat(-1.0), DVec3::new(3.5, 1.0, 1.0));
+    assert!(!around(two).goes_on && !around(small).goes_on);
+}
+
+#[test]
+fn a_surface_that_goes_on_elsewhere_is_said_to() {
+    let oval = around("y^2 + z^2 = x*(x - 1)*(x - 5)");
+    assert!(oval.goes_on && oval.region.max().x < 1.2, "{oval:?}");
+    let through_corners = ["z", "x = 1", "x = y", "x - y = 1", "max(x, y)"];
+    let others = ["sin(x) = cos(y) + sin(z)", "x^2 + y^2 = 9", "z = x*y", "x = 10"];
+    for formula in others.into_iter().chain(through_corners) {
+        assert!(around(formula).goes_on, "{formula}");
+    }
+    for formula in [
+        "x^2 + y^2 + z^2 = 1",
+        "x^2 + y^2 + z^2 = 4",
+        "max(abs(x), abs(y), abs(z)) = 2",
+        "x^4 + y^4 + z^4 = 3*x^2 + 7",
+        "x^2 + y^2 + z^2 = -1",
+    ] {
+        assert!(!around(formula).goes_on, "{formula}");
+    }
+}
+
+#[test]
+fn corners_of_the_cube_before_are_no_points_outside_of_it() {
+    let mut workspace = Workspace::default();
+    let mut holds_points = |formula| {
+        let surface = surface(formula);
+        let kernel = &**surface.over_boxes(Kernel::ValueEnclosures).unwrap();
+        // From (2, 0, 0) to (3, 1, 1), beside the cube of half side 2.
+        cube(8.0).holds_points(&[IVec3::new(10, 8, 8)], 16, kernel, &mut workspace)
+    };
+    assert!(holds_points("x = 3") && holds_points("x = 2.5"));
+    assert!(!holds_points("x = 2") && !holds_points("x^2 + y^2 + z^2 = 4"));
+}
+
+/// Intervals are wide here, so that all cells stay open, far from the sphere too; and a pole is no surface.
+#[test]
+fn what_is_not_proven_is_not_said_to_go_on() {
+    let sphere = "x^2 + y^2 + z^2 - 1 + 20((x - y)^2 - x^2 + 2x*y - y^2)";
+    for formula in [sphere, "1/(x - 20)"] {
+        assert!(!around(formula).goes_on, "{formula}");
+    }
+}
+
+/// Intervals are wide, and from a larger cube on the region would be: 1.125 instead of 35 of 32 parts.
+#[test]
+fn a_larger_cube_is_taken_only_if_it_holds_more() {
+    let region = fitted("x^2 + y^2 + z^2 - 1 + ((x - y)^2 - x^2 + 2x*y - y^2)/4");
+    assert_eq!((region.min(), region.max()), (DVec3::splat(-1.09375), DVec3::splat(1.09375)));
+}
+
+#[test]
+fn what_is_far_away_is_looked_for_there() {
+    assert_close(
+        "(x - 3000)^2 + y^2 + z^2 = 1",
+        DVec3::new(2999.0, -1.0, -1.0),
+        DVec3::new(3001.0, 1.0, 1.0),
+    );
+    assert_close("x^2 + y^2 + z^2 = 1e12", DVec3::splat(-1e6), DVec3::splat(1e6));
+}
+
+#[test]
+fn what_is_met_first_in_the_largest_of_the_near_cubes_is_no_scrap() {
+    assert_close("x^2 + y^2 + z^2 = 490000", DVec3::splat(-700.0), DVec3::splat(700.0));
+    for formula in ["x = 300", "x = 1000", "x^2 + y^2 = 90000"] {
+        assert!(around(formula).goes_on, "{formula}");
+    }
+}
+
+#[test]
+fn of_two_regions_neither_may_hide_what_goes_on_outside_of_the_other() {
+    let [near, far] = ["x^2 + y^2 = 1", "x^2 + y^2 + z^2 = 100"].map(around);
+    assert!(near.goes_on && near.hull(&near).goes_on);
+    assert!(!near.hull(&far).goes_on && !far.hull(&near).goes_on);
+}
+
+/// Nearer cubes show corners of the hyperboloid, and its waist is farther out.
+#[test]
+fn scraps_are_not_taken_for_the_surface() {
+    let region = fitted("x^2 + y^2 - z^2 = 100");
+    assert!(region.max().x >= 30.0, "{region:?}");
+}
+
+#[test]
+fn flat_surfaces_keep_some_space_around_them() {
+    let region = fitted("x^2 + y^2 + 1e6 z^2 = 1");
+    assert!(region.extent().z >= 0.25 * region.extent().x - 1e-9 && region.extent().x < 2.3, "{region:?}");
+}
+
+#[test]
+fn unbounded_surfaces_are_cut_off_where_they_go_on() {
+    assert_eq!(fitted("sin(x) = cos(y) + sin(z)"), Region::standard());
+    let cylinder = fitted("x^2 + y^2 = 9");
+    assert!(cylinder.extent().z == 16.0 && cylinder.extent().x <= 7.0, "{cylinder:?}");
+}
+
+#[test]
+fn a_single_point_keeps_a_region_around_it() {
+    let region = fitted("(x - 1)^2 + y^2 + z^2 = 0");
+    assert!(region.extent().min_element() > 1e-12 && region.extent().max_element() < 1e-6, "{region:?}");
+}
+
+#[test]
+fn nothing_to_see_gives_the_standard_region() {
+    for formula in ["x^2 + y^2 + z^2 = -1", "sqrt(-1 - x^2)", "1"] {
+        assert_eq!(fitted(formula), Region::standard(), "{formula}");
+    }
+}
