@@ -1,7 +1,7 @@
 //! What is known of a program's values before any box is seen: their enclosures over the largest boxes that a kernel takes.
 
 use iso_expr::engine::Boxes;
-use iso_expr::{Decorated, Decoration, Extension, Interval, Node, Operation, Program};
+use iso_expr::{Decorated, Decoration, Interval, Node, Operation, Program};
 
 use Decoration::Common;
 
@@ -101,12 +101,7 @@ impl Domain {
                     let operand = &mut operands[assumption.operand];
                     *operand = assumption.narrowed(*operand);
                 }
-                let [a, b, c] = operands;
-                match operation.extension() {
-                    Extension::Unary(extend) => extend(a),
-                    Extension::Binary(extend) => extend(a, b),
-                    Extension::Ternary(extend) => extend(a, b, c),
-                }
+                operation.extension().of(operands)
             }
         };
         self.ranges.push(range);

@@ -4,7 +4,7 @@ use std::mem::offset_of;
 
 use cranelift_codegen::ir::{InstBuilder, StackSlot, StackSlotData, StackSlotKind, Type, Value, types};
 use iso_expr::interval::sine_and_cosine_by_ends;
-use iso_expr::{Decorated, Decoration, Extension, Interval, Operation};
+use iso_expr::{Decorated, Decoration, Interval, Operation};
 
 use crate::elementary;
 use crate::enclosures::{Enclosure, decoration_of, known};
@@ -48,12 +48,8 @@ pub(crate) unsafe extern "C" fn extend(operation: Operation, operands: *const Pa
     // SAFETY: the room is there, and apart from the operands.
     let result = unsafe { &mut *result };
     let extended = |lane: usize| {
-        let operand = |place: usize| operands[place].get(lane);
-        match operation.extension() {
-            Extension::Unary(extend) => extend(operand(0)),
-            Extension::Binary(extend) => extend(operand(0), operand(1)),
-            Extension::Ternary(extend) => extend(operand(0), operand(1), operand(2)),
-        }
+        let operand = |place: usize| operands.get(place).map_or(Decorated::EMPTY, |pair| pair.get(lane));
+        operation.extension().of([0, 1, 2].map(operand))
     };
     let first = extended(0);
     result.set(0, first);

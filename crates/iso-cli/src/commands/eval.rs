@@ -48,25 +48,20 @@ const VALUE_COLUMNS: [&str; 4] = ["value", "dx", "dy", "dz"];
 fn at_points(
     engine: Arc<dyn Engine>,
     program: &Program,
-    [x, y, z]: &[Vec<f64>; 3],
+    points: &[Vec<f64>; 3],
     destination: &Destination,
     form: Form,
 ) -> Result<(), Failure> {
     let kernel = engine.batch(program)?;
     let outputs = program.outputs().len();
-    let mut scratch = Scratch::default();
-    destination.write(|writer| {
-        let columns = VALUE_COLUMNS[..outputs].iter().map(ToString::to_string).collect();
-        let mut table = TableWriter::new(writer, columns, form)?;
-        let mut values = Vec::new();
-        for ((x, y), z) in x.chunks(BATCH).zip(y.chunks(BATCH)).zip(z.chunks(BATCH)) {
-            values.resize(outputs * x.len(), 0.0);
-            kernel.evaluate(&mut scratch, &[x, y, z], &mut values);
-            for row in 0..x.len() {
-                table.row((0..outputs).map(|output| digits(values[output * x.len() + row])))?;
-            }
-        }
-        table.finish()
+    let columns = VALUE_COLUMNS[..outputs].iter().map(ToString::to_string).collect();
+    let (mut scratch, mut values) = (Scratch::default(), Vec::new());
+    write_batches(points, columns, (destination, form), |batch| {
+        let count = batch[0].len();
+        values.resize(outputs * count, 0.0);
+        kernel.evaluate(&mut scratch, &batch, &mut values);
+        let fields = |row| (0..outputs).map(|output| digits(values[output * count + row])).collect();
+        (0..count).map(fields).collect()
     })
 }
 
@@ -74,24 +69,36 @@ fn at_points(
 fn with_errors(
     engine: Arc<dyn Engine>,
     program: &Program,
-    [x, y, z]: &[Vec<f64>; 3],
+    points: &[Vec<f64>; 3],
     destination: &Destination,
     form: Form,
 ) -> Result<(), Failure> {
     let (values, enclosures) = (engine.batch(program)?, engine.boxes(program)?);
     let outputs = program.outputs().len();
+    let columns = |name: &&str| [name.to_string(), format!("{name}_error"), format!("{name}_digits_lost")];
+    let columns = VALUE_COLUMNS[..outputs].iter().flat_map(columns).collect();
     let mut scratch = Scratch::default();
+    write_batches(points, columns, (destination, form), |batch| {
+        let count = batch[0].len();
+        let found = rounded(&*values, &*enclosures, &mut scratch, batch, outputs);
+        let fields = |row: usize| {
+            (0..outputs).flat_map(|output| Rounded::fields(found[output * count + row])).collect()
+        };
+        (0..count).map(fields).collect()
+    })
+}
+
+/// Writes a table with a row for each point. `rows` gives the fields of those of a batch, by their coordinates.
+fn write_batches(
+    [x, y, z]: &[Vec<f64>; 3],
+    columns: Vec<String>,
+    (destination, form): (&Destination, Form),
+    mut rows: impl FnMut([&[f64]; 3]) -> Vec<Vec<String>>,
+) -> Result<(), Failure> {
     destination.write(|writer| {
-        let columns =
-            |name: &&str| [name.to_string(), format!("{name}_error"), format!("{name}_digits_lost")];
-        let columns = VALUE_COLUMNS[..outputs].iter().flat_map(columns).collect();
         let mut table = TableWriter::new(writer, columns, form)?;
         for ((x, y), z) in x.chunks(BATCH).zip(y.chunks(BATCH)).zip(z.chunks(BATCH)) {
-            let found = rounded(&*values, &*enclosures, &mut scratch, [x, y, z], outputs);
-            for row in 0..x.len() {
-                let places = (0..outputs).map(|output| found[output * x.len() + row]);
-                table.row(places.flat_map(Rounded::fields))?;
-            }
+            rows([x, y, z]).into_iter().try_for_each(|fields| table.row(fields.into_iter()))?;
         }
         table.finish()
     })

@@ -2,7 +2,7 @@
 
 use super::error::{FormulaError, FormulaErrorKind};
 use super::limits;
-use crate::{Axis, Constant, Node, NodeId, Operation, Program, Value};
+use crate::{Axis, Constant, Node, NodeId, Operation, Program};
 
 /// Largest integer up to which doubles leave no integer out.
 const LARGEST_INTEGER: f64 = 9_007_199_254_740_992.0;
@@ -185,11 +185,11 @@ fn apply_known(
     known: impl Fn(usize) -> Option<f64>,
 ) -> Option<f64> {
     debug_assert_eq!(operands.len(), operation.arity());
-    Some(match operation.value() {
-        Value::Unary(value) => value(known(0)?),
-        Value::Binary(value) => value(known(0)?, known(1)?),
-        Value::Ternary(value) => value(known(0)?, known(1)?, known(2)?),
-    })
+    let mut values = [0.0; 3];
+    for (place, value) in values.iter_mut().take(operands.len()).enumerate() {
+        *value = known(place)?;
+    }
+    Some(operation.value().of(values))
 }
 
 /// Whether an operation on integers is exact in doubles wherever its result is an integer again.

@@ -15,6 +15,18 @@ pub enum Value {
     Ternary(extern "C" fn(f64, f64, f64) -> f64),
 }
 
+impl Value {
+    /// The value for these operands, of which only as many as the arity count.
+    #[inline]
+    pub fn of(self, [a, b, c]: [f64; 3]) -> f64 {
+        match self {
+            Self::Unary(value) => value(a),
+            Self::Binary(value) => value(a, b),
+            Self::Ternary(value) => value(a, b, c),
+        }
+    }
+}
+
 macro_rules! values {
     ($($function:ident($($operand:ident),*) = $value:expr;)*) => {
         $(pub(crate) extern "C" fn $function($($operand: f64),*) -> f64 { $value })*

@@ -1,7 +1,6 @@
 //! The definition of a program's value, for tests to hold engines and passes to.
 
 use super::{Node, Program};
-use crate::Value;
 
 impl Program {
     /// The outputs for these arguments, by the table alone.
@@ -18,12 +17,7 @@ impl Program {
                 Node::Variable(argument) => arguments.as_ref()[argument.index()],
                 Node::Constant(constant) => constant.value(),
                 Node::Apply(operation, operands) => {
-                    let [a, b, c] = operands.map(|operand| values[operand.index()]);
-                    match operation.value() {
-                        Value::Unary(value) => value(a),
-                        Value::Binary(value) => value(a, b),
-                        Value::Ternary(value) => value(a, b, c),
-                    }
+                    operation.value().of(operands.map(|operand| values[operand.index()]))
                 }
             });
         }

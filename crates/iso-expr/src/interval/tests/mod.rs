@@ -7,8 +7,8 @@ mod shape;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::{Decorated, Decoration, Interval};
+use crate::Operation;
 use crate::random::Random;
-use crate::{Operation, Value};
 
 /// The operations' operands are triples, of which only as many count as the arity.
 type Box3 = [Decorated; 3];
@@ -19,13 +19,11 @@ fn extend(operation: Operation, operands: Box3) -> Decorated {
 }
 
 /// The operation's value: the real one, rounded to nearest.
-fn nearest(operation: Operation, [a, b, c]: Point3) -> f64 {
-    match operation.value() {
+fn nearest(operation: Operation, operands @ [a, b, _]: Point3) -> f64 {
+    match operation {
         // Multiplied out, a power is not the nearest double.
-        _ if operation == Operation::IntegerPower => core_math::pow(a, b),
-        Value::Unary(value) => value(a),
-        Value::Binary(value) => value(a, b),
-        Value::Ternary(value) => value(a, b, c),
+        Operation::IntegerPower => core_math::pow(a, b),
+        _ => operation.value().of(operands),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Operations on constants.
 
 use crate::program::exact::{product_is_exact, sum_is_exact};
-use crate::{Constant, Decorated, Decoration, Node, NodeId, Operation, Program, Value};
+use crate::{Constant, Decorated, Decoration, Node, NodeId, Operation, Program};
 
 /// The constant that `operation` gives when all `operands` are constants. None when it is undefined, or its double is not
 /// finite, for then both are best left to evaluation.
@@ -15,12 +15,8 @@ pub(in crate::program) fn folded(
         let Node::Constant(operand) = program.node(*operand) else { return None };
         *constant = operand;
     }
-    let [a, b, c] = constants.map(Constant::value);
-    let value = match operation.value() {
-        Value::Unary(value) => value(a),
-        Value::Binary(value) => value(a, b),
-        Value::Ternary(value) => value(a, b, c),
-    };
+    let operands @ [a, b, _] = constants.map(Constant::value);
+    let value = operation.value().of(operands);
     if !value.is_finite() {
         return None;
     }
