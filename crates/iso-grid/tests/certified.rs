@@ -83,6 +83,20 @@ fn a_squared_sphere_is_touched() {
     }
 }
 
+/// Intervals cannot tell these roots at x = 2 and 2.0001 from touches, for they do not see what cancels. Between them F is certainly not
+/// zero.
+#[test]
+fn a_touch_is_where_f_may_be_zero() {
+    for scale in ["1e5", "1e6"] {
+        let cancels = format!("{scale}*((x + 1)^3 - x^3 - 3*x^2 - 3*x - 1)");
+        let formula = format!("1000*x^2 - 4000.1*x + 4000.2 + {cancels}");
+        let Outcome::Touch(Hit { t, bracket }) = end(&formula, 3.0, DVec3::new(0.3, 1.9, 2.1), X) else {
+            panic!("{formula} is touched");
+        };
+        assert!((t - 1.7).abs() < 2e-6 && bracket.end - bracket.start < 4e-6, "{formula}: {t}, {bracket:?}");
+    }
+}
+
 #[test]
 fn a_fifth_power_is_touched_for_its_crossing_is_not_simple() {
     let outcome = end("(x^2+y^2+z^2-1)^5", 1.5, DVec3::new(-3.0, 0.3, 0.2), X);

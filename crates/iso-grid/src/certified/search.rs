@@ -194,11 +194,11 @@ impl Search<'_> {
         if !value.interval.is_bounded() {
             return Some(Outcome::Undecided(stretch));
         }
-        let t = match valley {
-            // A valley that was widened may have its bottom before the ray begins.
-            Some(valley) => self.line.extremum(valley).clamp(self.clip.outer.start, self.clip.outer.end),
-            None => stretch.start + 0.5 * (stretch.end - stretch.start),
-        };
+        // A valley that was widened may have its bottom before the ray begins, or far from zero.
+        let outer = self.clip.outer;
+        let bottom = valley.map(|valley| self.line.extremum(valley).clamp(outer.start, outer.end));
+        let bottom = bottom.filter(|t| !free_of_zero(self.line.value_at(*t)));
+        let t = bottom.unwrap_or(stretch.start + 0.5 * (stretch.end - stretch.start));
         let bracket = Span { start: stretch.start.min(t), end: stretch.end.max(t) };
         Some(Outcome::Touch(Hit { t, bracket }))
     }
