@@ -49,7 +49,7 @@ fn completions_exist_for_every_shell() {
 #[test]
 fn bad_usage_exits_with_2() {
     let case = Case::new();
-    let wrong: [&[&str]; 24] = [
+    let wrong: [&[&str]; 26] = [
         &[],
         &["draw"],
         &["render"],
@@ -74,6 +74,8 @@ fn bad_usage_exits_with_2() {
         &["eval", "x"],
         &["eval", "x", "--points", "a.csv", "--boxes", "b.csv"],
         &["trace", "x"],
+        &["bench", "x", "--runs", "0"],
+        &["render", "a := 1; x = a", "--set", "a=2", "--sweep", "a=1:2"],
     ];
     for arguments in wrong {
         let run = case.run(arguments).exits(2);

@@ -1,5 +1,6 @@
 //! Values of flags, from text to types. Clap turns their errors into reports that name the flag.
 
+use std::num::NonZeroU32;
 use std::str::FromStr;
 use std::time::Duration;
 
@@ -27,6 +28,11 @@ fn constant(text: &str) -> Option<f64> {
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
     let value = finite(text)?;
     if value > 0.0 { Ok(value) } else { Err(format!("expected a number above zero, found {value}")) }
+}
+
+/// How often something is done.
+pub(crate) fn times(text: &str) -> Result<NonZeroU32, String> {
+    text.trim().parse().map_err(|_| format!("expected a whole number from 1 on, found `{text}`"))
 }
 
 /// `a,b` for the cube with these ends along every axis, or `xmin,ymin,zmin,xmax,ymax,zmax`.
@@ -178,7 +184,7 @@ impl FromStr for Setting {
 /// A parameter that runs from one value to another.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Sweep {
-    name: String,
+    pub(crate) name: String,
     from: f64,
     to: f64,
 }

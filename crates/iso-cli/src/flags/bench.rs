@@ -36,7 +36,7 @@ pub(crate) struct MeasurementFlags {
     pub(crate) size: Size,
 
     /// How often everything is measured
-    #[arg(long, value_name = "N", default_value = "9")]
+    #[arg(long, value_name = "N", default_value = "9", value_parser = values::times)]
     pub(crate) runs: NonZeroU32,
 
     /// Print one JSON object

@@ -37,7 +37,7 @@ pub(crate) struct EnginesFlags {
     pub(crate) patience: Duration,
 
     /// How often everything is measured
-    #[arg(long, value_name = "N", default_value = "3")]
+    #[arg(long, value_name = "N", default_value = "3", value_parser = values::times)]
     pub(crate) runs: NonZeroU32,
 
     /// Begin no measurement after this time, such as 90s or 2m

@@ -129,7 +129,7 @@ pub(crate) struct SweepFlags {
     pub(crate) size: Size,
 
     /// How often each setting is measured
-    #[arg(long, value_name = "N", default_value = "5")]
+    #[arg(long, value_name = "N", default_value = "5", value_parser = values::times)]
     pub(crate) runs: NonZeroU32,
 
     /// Begin no measurement after this time, such as 90s or 2m

@@ -13,7 +13,7 @@ use crate::formula::{Source, Text, minus_level};
 use crate::pictures::PictureFiles;
 use crate::plan::plan;
 use crate::summary::Frame;
-use crate::values::Setting;
+use crate::values::{Setting, Sweep};
 
 /// A surface, shared by all pictures in which it is the same: what is known of it is kept from one to the next.
 pub(super) struct Subject {
@@ -48,6 +48,11 @@ pub(super) fn shots(
             "--frames is given, but nothing changes from picture to picture",
             "add --turntable or --sweep NAME=FROM:TO, or leave it out",
         ));
+    }
+    let is_set = |sweep: &&Sweep| picture.formula.settings.iter().any(|setting| setting.name == sweep.name);
+    if let Some(sweep) = sequence.sweep.iter().find(is_set) {
+        let problem = format!("--set and --sweep both give values of {}", sweep.name);
+        return Err(Failure::usage(problem, "leave out one of them"));
     }
     let source = Source::read(&picture.formula.formula)?;
     let mut phases = Phases::default();
