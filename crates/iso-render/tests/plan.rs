@@ -187,11 +187,12 @@ fn boxes_are_fitted_and_pixels_averaged_only_when_asked_for() {
     assert!(planned(&fitting).contains(&Kernel::ValueEnclosures));
 }
 
-/// Of the camera, kernels know at most whether its rays are parallel. Then the certified method takes slopes along their direction alone, by
-/// fewer operations.
+/// Of the camera, kernels know at most whether its rays are parallel. Then the certified method takes slopes along their direction alone: of
+/// Klein's bottle by fewer operations.
 #[test]
 fn parallel_rays_take_slopes_along_their_direction() {
-    let program = program("1/(x^2 + y^2 + z^2) + 1/((x - 1)^2 + y^2 + z^2) = 4");
+    let bottle = "r := x^2+y^2+z^2; (r+2y-1)*((r-2y-1)^2-8z^2) + 16x z (r-2y-1) = 0";
+    let program = program(bottle);
     let surface = Surface::new(Arc::new(Interpreter), program.clone());
     for method in methods() {
         let parallel = Plan::new(&wanted(&program, method, Layers::ALL));
