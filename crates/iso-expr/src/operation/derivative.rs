@@ -140,8 +140,8 @@ pub(super) fn multiply(chain: &mut Chain<'_>) -> Option<NodeId> {
     chain.sum(left, right)
 }
 
-/// (a′ − (a/b)·b′) / b. Where a′ is zero, −(a/b²)·b′, of which the first factor is the same along all axes; or −(a/b)·(b′/b) over a sum of
-/// exponentials, of which b′/b has shares.
+/// (a′ − (a/b)·b′) / b. Where a′ is zero, −(1/b)·((a/b)·b′), for along all axes that divides by b once, and the factors come in an order in which
+/// they are of moderate size; or −(a/b)·(b′/b) over a sum of exponentials, of which b′/b has shares.
 pub(super) fn divide(chain: &mut Chain<'_>) -> Option<NodeId> {
     let ([a, b, _], [da, db, _]) = (chain.operands, chain.derivatives);
     let quotient = chain.result;
@@ -149,12 +149,11 @@ pub(super) fn divide(chain: &mut Chain<'_>) -> Option<NodeId> {
         let growth = if chain.program.is_sum_of_exponentials(b) {
             let relative = chain.relative(db?, b);
             chain.product(quotient, Some(relative))
-        } else if chain.program.node(a) == Node::Constant(Constant::exact(1.0)) {
-            let square = chain.square(quotient);
-            chain.product(square, db)
         } else {
-            let growth = chain.apply(Operation::Divide, &[quotient, b]);
-            chain.product(growth, db)
+            let one = chain.literal(1.0);
+            let reciprocal = if a == one { quotient } else { chain.apply(Operation::Divide, &[one, b]) };
+            let growth = chain.product(quotient, db);
+            chain.product(reciprocal, growth)
         };
         return chain.negated(growth);
     };
