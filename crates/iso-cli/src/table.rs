@@ -8,7 +8,7 @@ mod property;
 
 use std::fmt::{Display, LowerExp};
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Write};
+use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
@@ -38,6 +38,8 @@ enum Problem {
     LongRow { given: usize, expected: usize },
     #[error("column `{column}`: expected a number, found `{given}`")]
     NotANumber { column: String, given: String },
+    #[error("the line is longer than {LONGEST_LINE} bytes")]
+    LongLine,
     #[error("the rows up to here are all that this machine's memory holds")]
     TooLarge,
     #[error("{0}")]
@@ -93,9 +95,9 @@ pub(crate) fn read_from<const N: usize>(
 ) -> Result<Table<N>, TableError> {
     let mut table = Table { columns: [const { Vec::new() }; N], path: path.to_owned(), lines: Vec::new() };
     let mut header = None;
-    for (line, text) in (1..).zip(source.split(b'\n')) {
+    for (line, text) in (1..).zip(lines(source)) {
         let at = |problem| TableError { path: path.to_owned(), line, problem };
-        let text = text.map_err(|error| at(Problem::Unreadable(error)))?;
+        let text = text.map_err(at)?;
         let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&text).trim_ascii();
         if text.is_empty() || text.starts_with(b"#") {
             continue;
@@ -120,6 +122,22 @@ pub(crate) fn read_from<const N: usize>(
             Err(TableError { path: path.to_owned(), line: 1, problem })
         }
     }
+}
+
+/// The longest line, in bytes: far longer than any row, and kept in memory.
+const LONGEST_LINE: u64 = 1 << 20;
+
+/// The lines of a text, up to the first that is too long.
+fn lines(mut source: impl BufRead) -> impl Iterator<Item = Result<Vec<u8>, Problem>> {
+    std::iter::from_fn(move || {
+        let mut line = Vec::new();
+        match source.by_ref().take(LONGEST_LINE + 1).read_until(b'\n', &mut line) {
+            Err(error) => Some(Err(Problem::Unreadable(error))),
+            Ok(0) => None,
+            Ok(length) if length as u64 > LONGEST_LINE => Some(Err(Problem::LongLine)),
+            Ok(_) => Some(Ok(line)),
+        }
+    })
 }
 
 /// What some programs put before the first line.
@@ -319,6 +337,8 @@ mod tests {
             "t.csv:2: the row has 4 fields, but there are 2 columns; numbers have points, not commas";
         assert_eq!(error("x,y\n1,5,2,3\n"), too_long);
         assert_eq!(table("x,y\n1,2,\n", ["x", "y"]), Ok([vec![1.0], vec![2.0]]));
+        let endless = "x".repeat(1 << 21);
+        assert_eq!(error(&endless), "t.csv:1: the line is longer than 1048576 bytes");
         assert!(error("x,\u{1b}[2J").ends_with("are x,\u{fffd}[2J"), "{}", error("x,\u{1b}[2J"));
         let long = format!("x,y\n{},0\n", "9e".repeat(60));
         assert!(error(&long).ends_with("9e9e…`"), "{}", error(&long));
