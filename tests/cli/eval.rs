@@ -30,7 +30,7 @@ fn gradients_stand_beside_the_values() {
 }
 
 #[test]
-fn results_do_not_take_the_place_of_the_points() {
+fn results_do_not_take_the_place_of_what_is_read() {
     let case = Case::new();
     let points = "x,y,z\n1,2,3\n";
     case.file("points.csv", points);
@@ -38,6 +38,11 @@ fn results_do_not_take_the_place_of_the_points() {
         "error: the results would take the place of points.csv, which is read\n  help: give --output another name\n",
     );
     assert_eq!(case.content("points.csv"), points.as_bytes());
+    case.file("plane.txt", "x");
+    case.run(&["eval", "@plane.txt", "--at", "1,2,3", "-o", "plane.txt"])
+        .exits(2)
+        .mentions("plane.txt, which is read");
+    assert_eq!(case.content("plane.txt"), b"x");
 }
 
 #[test]

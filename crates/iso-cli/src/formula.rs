@@ -43,9 +43,10 @@ impl Source {
         let (name, read) = match argument.as_encoded_bytes() {
             b"-" => ("standard input".to_owned(), read_up_to(LARGEST_TEXT, io::stdin().lock())),
             b"@" => return Err(Failure::usage("`@` names no file", "write `@formula.txt`")),
-            [b'@', ..] => read_file(&argument.to_string_lossy()[1..]),
-            _ if is_model(&argument.to_string_lossy()) => read_file(&argument.to_string_lossy()),
-            bytes => (TYPED.to_owned(), Ok(bytes.to_vec())),
+            bytes => match file_of(argument) {
+                Some(path) => read_file(path),
+                None => (TYPED.to_owned(), Ok(bytes.to_vec())),
+            },
         };
         match read {
             Ok(bytes) => Ok(Self { name, bytes }),
@@ -91,10 +92,20 @@ impl Source {
     }
 }
 
+/// The file that a formula is read from, `@file` or `model.vm`; `None` of one that was typed.
+pub(crate) fn file_of(argument: &OsStr) -> Option<String> {
+    let argument = argument.to_string_lossy();
+    match argument.strip_prefix('@') {
+        Some(path) => Some(path.to_owned()),
+        None => is_model(&argument).then(|| argument.into_owned()),
+    }
+}
+
 /// The file's name and what is in it.
-fn read_file(path: &str) -> (String, io::Result<Vec<u8>>) {
-    let largest = if is_model(path) { LARGEST_MODEL } else { LARGEST_TEXT };
-    (path.to_owned(), File::open(path).and_then(|file| read_up_to(largest, file)))
+fn read_file(path: String) -> (String, io::Result<Vec<u8>>) {
+    let largest = if is_model(&path) { LARGEST_MODEL } else { LARGEST_TEXT };
+    let read = File::open(&path).and_then(|file| read_up_to(largest, file));
+    (path, read)
 }
 
 /// What a source holds, or so much of it that it is seen to be longer than the largest that is allowed.
@@ -103,11 +114,11 @@ fn read_up_to(largest: usize, source: impl Read) -> io::Result<Vec<u8>> {
     const LONGEST_CHARACTER: usize = 4;
     let mut content = Vec::new();
     source.take((largest + LONGEST_CHARACTER) as u64).read_to_end(&mut content)?;
-    match str::from_utf8(&content) {
-        Err(error) if content.len() > largest && error.error_len().is_none() => {
-            content.truncate(error.valid_up_to());
-        }
-        _ => {}
+    if content.len() > largest
+        && let Err(error) = str::from_utf8(&content)
+        && error.error_len().is_none()
+    {
+        content.truncate(error.valid_up_to());
     }
     Ok(content)
 }
@@ -127,5 +138,19 @@ pub(crate) fn minus_level(formula: &Formula, level: Option<f64>) -> Result<Progr
             "the surface of left = right is where left − right = 0: leave out --level, or write (left) - (right)",
         )),
         Some(level) => Ok(formula.minus_level(level)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sources_are_read_no_further_than_they_may_be_long() {
+        let read = |text: &[u8]| read_up_to(5, text.chain(io::repeat(b'x')).take(100)).unwrap();
+        assert_eq!(read(b"ab"), b"abxxxxxxx");
+        // A character that is cut is left out.
+        assert_eq!(read("12345678π".as_bytes()), b"12345678");
+        assert_eq!(read_up_to(5, &b"ab"[..]).unwrap(), b"ab");
     }
 }

@@ -5,6 +5,9 @@ use iso_render::StatusCounts;
 
 use crate::failure::Failure;
 
+/// That nothing depends on where one looks.
+const CONSTANT: &str = "F − C does not depend on x, y or z";
+
 /// A picture that was drawn.
 pub(crate) struct Drawn<'a> {
     pub(crate) surface: &'a Surface,
@@ -29,7 +32,7 @@ impl Drawn<'_> {
         if hit + touch + undecided + unfinished == 0 {
             notes.push(format!("nothing is seen: {}", self.why_nothing()?));
         } else if self.surface.program().arguments() == 0 {
-            notes.push("F − C does not depend on x, y or z: all of the box is the surface".to_owned());
+            notes.push(format!("{CONSTANT}: all of the box is the surface"));
         } else if self.fitted.goes_on {
             notes.push(goes_on_outside("that is shown", &self.fitted.region));
         }
@@ -42,7 +45,7 @@ impl Drawn<'_> {
         let shown = extent(region);
         let mut workspace = Workspace::default();
         if surface.program().arguments() == 0 {
-            return Ok("F − C does not depend on x, y or z".to_owned());
+            return Ok(CONSTANT.to_owned());
         }
         if region.enclosure(surface, &mut workspace)?.interval.is_empty() {
             return Ok(format!("F is defined nowhere in the box, {shown}: --box sets another"));

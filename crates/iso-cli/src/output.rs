@@ -199,17 +199,24 @@ fn without_temporary_name(error: io::Error) -> io::Error {
 
 #[cfg(test)]
 mod tests {
+    use tempfile::TempDir;
+
     use super::*;
 
     fn names(folder: &Path) -> Vec<String> {
         fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
     }
 
-    #[test]
-    fn a_file_is_replaced_whole() {
+    fn folder_with_a_file() -> (TempDir, PathBuf) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("out.csv");
         fs::write(&path, "before").unwrap();
+        (folder, path)
+    }
+
+    #[test]
+    fn a_file_is_replaced_whole() {
+        let (folder, path) = folder_with_a_file();
         let file = OutputFile::new(path.clone()).unwrap();
         file.write(|writer| write!(writer, "after")).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "after");
@@ -218,9 +225,7 @@ mod tests {
 
     #[test]
     fn a_failure_leaves_what_was_there() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("out.csv");
-        fs::write(&path, "before").unwrap();
+        let (folder, path) = folder_with_a_file();
         let file = OutputFile::new(path.clone()).unwrap();
         let result = file.write(|writer| {
             write!(writer, "half of it")?;
@@ -242,9 +247,7 @@ mod tests {
 
     #[test]
     fn files_that_may_only_be_read_or_are_read_stay() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("out.csv");
-        fs::write(&path, "before").unwrap();
+        let (folder, path) = folder_with_a_file();
         let file = OutputFile::new(path.clone()).unwrap();
         assert!(file.spares(&folder.path().join("../").join(folder.path()).join("out.csv")).is_err());
         assert!(file.spares(&folder.path().join("in.csv")).is_ok());
@@ -260,9 +263,7 @@ mod tests {
     #[test]
     fn a_file_keeps_its_permissions() {
         use std::os::unix::fs::PermissionsExt;
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("out.csv");
-        fs::write(&path, "before").unwrap();
+        let (_folder, path) = folder_with_a_file();
         fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).unwrap();
         OutputFile::new(path.clone()).unwrap().write(|writer| write!(writer, "after")).unwrap();
         assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o600);

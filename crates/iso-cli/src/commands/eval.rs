@@ -1,6 +1,6 @@
 //! `iso eval`: values of a formula at points, enclosures over boxes.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use iso_expr::engine::{Boxes, Enclosures};
@@ -9,7 +9,7 @@ use iso_expr::{Decoration, Engine, Program, Scratch};
 use crate::engine::engine;
 use crate::failure::Failure;
 use crate::flags::{EvalFlags, PlacesFlags};
-use crate::formula::{minus_level, understand};
+use crate::formula::{file_of, minus_level, understand};
 use crate::output::Destination;
 use crate::rounding::{Rounded, rounded};
 use crate::table::{self, Form, Table, TableError, TableWriter, digits};
@@ -22,7 +22,9 @@ pub(crate) fn run(flags: EvalFlags) -> Result<(), Failure> {
     let places = &flags.places;
     let form = flags.table.form();
     let destination = Destination::new(flags.table.output)?;
-    places.boxes.iter().chain(&places.points).try_for_each(|source| destination.spares(source))?;
+    let formula_file = file_of(&flags.formula.formula).map(PathBuf::from);
+    let mut sources = places.boxes.iter().chain(&places.points).chain(&formula_file);
+    sources.try_for_each(|source| destination.spares(source))?;
     let value = minus_level(&understand(&flags.formula)?, flags.level.level)?.simplified();
     let program = if places.gradient { value.with_gradient().simplified() } else { value };
     let engine = engine(flags.engine.engine)?;

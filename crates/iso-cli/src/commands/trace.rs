@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 use std::iter;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use iso_expr::CompileError;
@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use crate::engine::{engine, threads};
 use crate::failure::Failure;
 use crate::flags::TraceFlags;
-use crate::formula::{minus_level, understand};
+use crate::formula::{file_of, minus_level, understand};
 use crate::interruption::Interruption;
 use crate::method::{fitted_unless, method};
 use crate::notes::goes_on_outside;
@@ -31,7 +31,9 @@ pub(crate) fn run(flags: TraceFlags) -> Result<(), Failure> {
     let method = method(&flags.method)?;
     let form = flags.table.form();
     let destination = Destination::new(flags.table.output)?;
-    flags.rays.rays.iter().try_for_each(|source| destination.spares(source))?;
+    let formula_file = file_of(&flags.formula.formula).map(PathBuf::from);
+    let mut sources = flags.rays.rays.iter().chain(&formula_file);
+    sources.try_for_each(|source| destination.spares(source))?;
     let formula = understand(&flags.formula)?;
     let program = minus_level(&formula, flags.level.level)?.simplified();
     let rays = flags.rays.rays.as_deref().map_or(Ok(flags.rays.ray), read_rays)?;

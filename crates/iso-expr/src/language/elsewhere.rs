@@ -34,6 +34,9 @@ const CALLS: [(&str, &str); 25] = [
 const SPECIAL: [&str; 10] =
     ["erf", "erfc", "gamma", "tgamma", "lgamma", "beta", "zeta", "j0", "factorial", "noise"];
 
+/// What to do without infinity.
+pub(super) const FINITE: &str = "numbers are finite: write one that is large enough, such as `1e9`";
+
 /// Names of what is no number here.
 const NO_NUMBERS: [&str; 5] = ["inf", "infinity", "infty", "oo", "nan"];
 
@@ -53,7 +56,7 @@ pub(super) fn written_here(name: &str) -> Option<String> {
 pub(super) fn not_here(name: &str) -> Option<String> {
     let name = name.to_lowercase();
     if NO_NUMBERS.contains(&&*name) {
-        return Some("numbers are finite: write one that is large enough, such as `1e9`".to_owned());
+        return Some(FINITE.to_owned());
     }
     LIBRARIES.contains(&&*name).then(|| format!("functions have no library before them: leave out `{name}.`"))
 }

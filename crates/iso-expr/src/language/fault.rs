@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::elsewhere::FINITE;
 use super::error::{FormulaError, FormulaErrorKind};
 use super::function::ArgumentCount;
 use super::item::{Item, Kind, shortened};
@@ -121,7 +122,7 @@ pub(super) fn stray(item: &Item<'_>) -> FormulaError {
         '÷' | '∕' => Some("write `/`"),
         '∗' => Some("write `*`"),
         '–' | '—' => Some("write `-`"),
-        '∞' => Some("numbers are finite: write one that is large enough, such as `1e9`"),
+        '∞' => Some(FINITE),
         '°' => Some("angles are in radians: write `*pi/180`"),
         '½' | '⅓' | '⅔' | '¼' | '¾' => Some("write fractions as `1/2`"),
         '₀'..='₉' => Some("write indices as digits: `x1`"),
