@@ -49,14 +49,23 @@ pub struct StatusCounts {
 }
 
 impl StatusCounts {
-    /// Counts one pixel more.
-    pub fn count(&mut self, status: Status) {
-        // Not by cases, for which one it is cannot be foreseen.
-        self.hit += u64::from(status == Status::Hit);
-        self.touch += u64::from(status == Status::Touch);
-        self.miss += u64::from(status == Status::Miss);
-        self.undecided += u64::from(status == Status::Undecided);
-        self.unfinished += u64::from(status == Status::Unfinished);
+    /// Those of pixels whose searches ended so.
+    pub fn of(outcomes: &[Outcome]) -> Self {
+        /// Of the number that holds all four counts, for which of them goes up cannot be foreseen.
+        const BITS: u32 = 16;
+        let mut counts = Self::default();
+        for few in outcomes.chunks((1 << BITS) - 1) {
+            let packed: u64 = few.iter().map(|outcome| 1 << (BITS * Status::from(outcome) as u32)).sum();
+            let of = |status: Status| packed >> (BITS * status as u32) & ((1 << BITS) - 1);
+            counts += Self {
+                hit: of(Status::Hit),
+                touch: of(Status::Touch),
+                miss: of(Status::Miss),
+                undecided: of(Status::Undecided),
+                unfinished: 0,
+            };
+        }
+        counts
     }
 }
 
@@ -189,4 +198,29 @@ fn make_room<T: Copy + Send + Sync>(layer: &mut Vec<T>, pixels: usize, value: T)
         (0..pixels).into_par_iter().map(|_| value).collect_into_vec(layer);
     }
     Some(())
+}
+
+#[cfg(test)]
+mod tests {
+    use iso_grid::{Hit, Span};
+
+    use super::*;
+
+    /// More of one kind than are counted at once.
+    #[test]
+    fn all_pixels_are_counted() {
+        let bracket = Span { start: 1.0, end: 2.0 };
+        let hit = Hit { t: 1.5, bracket };
+        let kinds = [
+            (Outcome::Miss, 200_000),
+            (Outcome::Hit(hit), 65_536),
+            (Outcome::Touch(hit), 3),
+            (Outcome::Undecided(bracket), 70_000),
+        ];
+        let outcomes: Vec<_> = kinds.iter().flat_map(|&(outcome, count)| vec![outcome; count]).collect();
+        let expected =
+            StatusCounts { hit: 65_536, touch: 3, miss: 200_000, undecided: 70_000, unfinished: 0 };
+        assert_eq!(StatusCounts::of(&outcomes), expected);
+        assert_eq!(StatusCounts::of(&[]), StatusCounts::default());
+    }
 }

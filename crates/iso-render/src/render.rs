@@ -178,8 +178,7 @@ impl Tile {
             return Ok(());
         }
         self.trace = watch.lap();
-        self.counts = StatusCounts::default();
-        outcomes.iter().for_each(|outcome| self.counts.count(Status::from(outcome)));
+        self.counts = StatusCounts::of(outcomes);
         let is_empty = self.counts.miss == rays.len() as u64;
         self.content = if is_empty { Content::Nothing } else { Content::Found };
         if are_normals_wanted && !is_empty {

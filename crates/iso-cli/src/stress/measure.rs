@@ -6,7 +6,7 @@ use iso_expr::{Engine, Interpreter};
 use iso_grid::{
     Certified, GridSettings, Method, Outcome, Ray, RootFinding, Surface, Tile, Tracer, Workspace,
 };
-use iso_render::{Camera, Projection, Size, Status, StatusCounts, View};
+use iso_render::{Camera, Projection, Size, StatusCounts, View};
 use serde::Serialize;
 
 use super::engines::{EngineCheck, check_engines};
@@ -285,8 +285,7 @@ impl Run {
         verdicts: &[Verdict],
         milliseconds: f64,
     ) -> Self {
-        let mut ends = StatusCounts::default();
-        answers.outcomes.iter().for_each(|outcome| ends.count(Status::from(outcome)));
+        let ends = StatusCounts::of(&answers.outcomes);
         let mut run = Self {
             engine,
             method,
