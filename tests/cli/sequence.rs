@@ -112,7 +112,7 @@ fn sequences_that_make_no_sense_are_refused() {
     refused(&["--frames", "3"], "nothing changes from picture to picture");
     refused(&["--sweep", "a=0:1"], "the formula has no parameter `a`");
     refused(&["--sweep", "a=0"], "expected NAME=FROM:TO");
-    refused(&["--turntable", "--frames", "1"], "1 is not in 2..=1000");
+    refused(&["--turntable", "--frames", "1"], "expected a whole number from 2 to 1000");
     refused(&["--turntable", "--eye", "1,2,3"], "cannot be used with");
     assert!(case.names().is_empty());
 }

@@ -1,6 +1,8 @@
 //! Values of flags, from text to types. Clap turns their errors into reports that name the flag.
 
+use std::fmt::Display;
 use std::num::NonZeroU32;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 use std::time::Duration;
 
@@ -28,6 +30,18 @@ fn constant(text: &str) -> Option<f64> {
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
     let value = finite(text)?;
     if value > 0.0 { Ok(value) } else { Err(format!("expected a number above zero, found {value}")) }
+}
+
+/// A whole number in a range.
+pub(crate) fn whole<N>(range: RangeInclusive<N>) -> impl Fn(&str) -> Result<N, String> + Clone
+where
+    N: Clone + Display + FromStr + PartialOrd,
+{
+    move |text| {
+        let (least, most) = (range.start(), range.end());
+        let number = text.trim().parse().ok().filter(|number| range.contains(number));
+        number.ok_or_else(|| format!("expected a whole number from {least} to {most}, found `{text}`"))
+    }
 }
 
 /// How often something is done.
@@ -79,7 +93,7 @@ pub(crate) fn counts(text: &str) -> Result<[u32; 3], String> {
 }
 
 fn count(text: &str) -> Result<u32, String> {
-    text.trim().parse().map_err(|_| format!("expected a whole number up to {}, found `{text}`", u32::MAX))
+    whole(0..=u32::MAX)(text)
 }
 
 fn numbers(text: &str) -> Result<Vec<f64>, String> {
@@ -232,6 +246,14 @@ mod tests {
         assert_eq!(vector("sqrt(2), 1/3, -e^2"), Ok(DVec3::new(2f64.sqrt(), 1.0 / 3.0, -1f64.exp().powi(2))));
         for wrong in ["x", "1 = 2", "1/0", "ln(-1)", "pi(", "a", "1;2"] {
             assert!(finite(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn whole_numbers_are_in_their_range() {
+        assert_eq!([whole(2..=9)("2"), whole(2..=9)(" 9")], [Ok(2), Ok(9)]);
+        for wrong in ["", "1", "10", "-3", "2.0", "99999999999", "two"] {
+            assert!(whole(2..=9)(wrong).is_err(), "{wrong}");
         }
     }
 

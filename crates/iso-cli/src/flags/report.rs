@@ -79,12 +79,12 @@ pub(crate) struct AxesFlags {
 
     /// Cells along every axis, for the methods grid and octree
     #[arg(long, value_name = "N,...", value_delimiter = ',', default_values_t = [8, 15, 30, 60])]
-    #[arg(value_parser = clap::value_parser!(u32).range(1..=i64::from(GridSettings::MOST_CELLS)))]
+    #[arg(value_parser = values::whole(1..=GridSettings::MOST_CELLS))]
     pub(crate) grids: Vec<u32>,
 
     /// Parts into which a cell beside the surface is cut, beside the default of each grid: 3 up to 20 cells, else 2
     #[arg(long, value_name = "M,...", value_delimiter = ',', default_values_t = [1, 2, 3])]
-    #[arg(value_parser = clap::value_parser!(u32).range(1..=i64::from(GridSettings::LARGEST_REFINEMENT)))]
+    #[arg(value_parser = values::whole(1..=GridSettings::LARGEST_REFINEMENT))]
     pub(crate) refines: Vec<u32>,
 
     /// Steps between samples, in parts of a cell; the method direct steps as for a grid of 30
@@ -105,7 +105,7 @@ pub(crate) struct AxesFlags {
     /// About how many operations the formulas have on which the engines are compared, beside the given one
     #[arg(long, value_name = "N,...", value_delimiter = ',')]
     #[arg(default_values_t = [3, 10, 30, 100, 300, 1000, 3000, 10_000])]
-    #[arg(value_parser = clap::value_parser!(u32).range(1..=50_000))]
+    #[arg(value_parser = values::whole(1..=50_000))]
     pub(crate) sizes: Vec<u32>,
 
     /// Measure all combinations
