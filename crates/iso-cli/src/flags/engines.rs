@@ -24,12 +24,12 @@ pub(crate) struct EnginesFlags {
     /// About how many operations the formulas have
     #[arg(long, value_name = "N,...", value_delimiter = ',')]
     #[arg(default_values_t = [3, 10, 30, 100, 300, 1000, 3000, 10_000])]
-    #[arg(value_parser = values::whole(1..=50_000))]
+    #[arg(value_parser = values::whole(1..=50_000_u32))]
     pub(crate) sizes: Vec<u32>,
 
     /// Width and height of the pictures
     #[arg(long, value_name = "PIXELS,...", value_delimiter = ',', default_values_t = [64, 128, 256, 512, 1024, 2048, 4096])]
-    #[arg(value_parser = values::whole(1..=16_384))]
+    #[arg(value_parser = values::whole(1..=16_384_u32))]
     pub(crate) sides: Vec<u32>,
 
     /// Leave out pictures that are expected to take longer than this

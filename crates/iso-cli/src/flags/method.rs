@@ -66,7 +66,7 @@ pub(crate) struct EngineFlag {
 #[command(next_help_heading = "Running")]
 pub(crate) struct ThreadsFlag {
     /// Threads that work at the same time; 0 for as many as there are cores
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::whole(0..=1024))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::whole(0..=1024_u16))]
     pub(crate) threads: u16,
 }
 

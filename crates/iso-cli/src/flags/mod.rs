@@ -111,10 +111,31 @@ pub(crate) fn with_tip(mut error: clap::Error) -> clap::Error {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
+    use clap::{CommandFactory, Parser};
+
+    use super::Flags;
 
     #[test]
     fn the_flags_are_consistent() {
-        super::Flags::command().debug_assert();
+        Flags::command().debug_assert();
+    }
+
+    /// A parser that makes another type than that of its field is found out when the flag is read.
+    #[test]
+    fn values_are_of_the_types_of_their_flags() {
+        for line in [
+            "render x --threads 2 --sweep a=0:1 --frames 3 --grid 4,5,6 --refine 2 --size 8x9 --smooth 2 --box -1,1 --time-limit 2s",
+            "eval x --at 1,2,3",
+            "trace x --ray 0,0,0,1,0,0 --threads 1",
+            "explain x --grid 3 --level 2 --size 5",
+            "bench x --runs 2 --threads 1 --size 9",
+            "engines --sizes 8 --sides 9 --runs 2 --threads 1",
+            "report x --grids 4,5 --refines 2,3 --steps 0.1 --sizes 8 --runs 2",
+            "stress --threads 1",
+            "completions bash",
+        ] {
+            let read = Flags::try_parse_from(["iso"].into_iter().chain(line.split(' ')));
+            assert!(read.is_ok(), "{line}: {}", read.unwrap_err());
+        }
     }
 }

@@ -105,7 +105,7 @@ pub(crate) struct AxesFlags {
     /// About how many operations the formulas have on which the engines are compared, beside the given one
     #[arg(long, value_name = "N,...", value_delimiter = ',')]
     #[arg(default_values_t = [3, 10, 30, 100, 300, 1000, 3000, 10_000])]
-    #[arg(value_parser = values::whole(1..=50_000))]
+    #[arg(value_parser = values::whole(1..=50_000_u32))]
     pub(crate) sizes: Vec<u32>,
 
     /// Measure all combinations

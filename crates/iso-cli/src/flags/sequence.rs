@@ -17,7 +17,7 @@ pub(crate) struct SequenceFlags {
     pub(crate) sweep: Vec<Sweep>,
 
     /// How many pictures: an animation where the picture is a .gif, else numbered files [default: 36, if there is a sequence; iso.gif]
-    #[arg(long, value_name = "N", value_parser = values::whole(2..=1000))]
+    #[arg(long, value_name = "N", value_parser = values::whole(2..=1000_u32))]
     pub(crate) frames: Option<u32>,
 }
 
