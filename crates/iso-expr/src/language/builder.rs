@@ -4,8 +4,8 @@ use super::error::{FormulaError, FormulaErrorKind};
 use super::limits;
 use crate::{Axis, Constant, Node, NodeId, Operation, Program};
 
-/// Largest integer up to which doubles leave no integer out.
-const LARGEST_INTEGER: f64 = 9_007_199_254_740_992.0;
+/// 2⁵³: an integer nearer to zero is a double, and no other one is rounded to it. 2⁵³ + 1 is rounded to this.
+const BEYOND_INTEGERS: f64 = 9_007_199_254_740_992.0;
 
 /// What is known of a node without evaluating the program.
 #[derive(Clone, Copy, Debug, Default)]
@@ -218,5 +218,5 @@ fn keeps_integers(operation: Operation) -> bool {
 }
 
 fn is_integer(value: f64) -> bool {
-    value.trunc() == value && value.abs() <= LARGEST_INTEGER
+    value.trunc() == value && value.abs() < BEYOND_INTEGERS
 }
