@@ -35,7 +35,7 @@ fn results_do_not_take_the_place_of_what_is_read() {
     let points = "x,y,z\n1,2,3\n";
     case.file("points.csv", points);
     case.run(&["eval", "x", "--points", "points.csv", "-o", "./points.csv"]).exits(2).reports(
-        "error: the results would take the place of points.csv, which is read\n  help: give --output another name\n",
+        "error: the results would take the place of points.csv, which is read\n  help: give the results another name\n",
     );
     assert_eq!(case.content("points.csv"), points.as_bytes());
     case.file("plane.txt", "x");

@@ -332,6 +332,22 @@ fn outputs_that_cannot_be_written_are_known_before_the_work() {
 }
 
 #[test]
+fn pictures_do_not_take_the_place_of_the_formula() {
+    let case = Case::new();
+    for (name, flags) in [
+        ("shape.csv", &["--points", "./shape.csv"][..]),
+        ("shape.png", &["-o", "shape.png"]),
+        ("shape.gif", &["--turntable", "--frames", "2", "-o", "shape.gif"]),
+        ("shape-1.exr", &["--turntable", "--frames", "2", "--depth", "shape.exr", "-o", "shape.gif"]),
+    ] {
+        case.file(name, SPHERE);
+        let formula = format!("@{name}");
+        render(&case, &formula, flags).exits(2).mentions(&format!("{name}, which is read"));
+        assert_eq!(case.content(name), SPHERE.as_bytes());
+    }
+}
+
+#[test]
 fn a_failed_run_leaves_the_old_picture() {
     let case = Case::new();
     case.file("out.png", "the old one");

@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use iso_expr::{CompileError, FormulaError};
-use iso_grid::GridError;
+use iso_grid::{GridError, RegionError};
 use iso_render::{CameraError, EncodeError, RenderError};
 use thiserror::Error;
 
@@ -136,6 +136,13 @@ impl From<GridError> for Failure {
             GridError::Compile(error) => Self::Compile(error),
             other => Self::Usage { problem: other.to_string(), help: None },
         }
+    }
+}
+
+impl From<RegionError> for Failure {
+    /// Boxes come from flags, and are known before anything is computed: bad usage.
+    fn from(error: RegionError) -> Self {
+        Self::Usage { problem: error.to_string(), help: None }
     }
 }
 

@@ -124,7 +124,7 @@ impl OutputFile {
             Place::Replaced(target) if source.canonicalize().is_ok_and(|source| source == *target) => {
                 let problem =
                     format!("the results would take the place of {}, which is read", source.display());
-                Err(Failure::usage(problem, "give --output another name"))
+                Err(Failure::usage(problem, "give the results another name"))
             }
             _ => Ok(()),
         }

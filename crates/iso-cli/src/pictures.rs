@@ -65,7 +65,7 @@ impl PictureFiles {
 
     /// No file may be written over another.
     fn check_apart(&self) -> Result<(), Failure> {
-        let files: Vec<_> = self.files().collect();
+        let files: Vec<_> = self.all().collect();
         let is_lost = |&(place, file): &(usize, &&OutputFile)| {
             files[..place].iter().any(|earlier| earlier.is_replaced_by(file))
         };
@@ -77,12 +77,12 @@ impl PictureFiles {
     /// The files' names as given, the shaded picture first.
     pub(crate) fn names(&self) -> Vec<String> {
         let is_sent = matches!(self.color, Some((Destination::Standard, _)));
-        let names = self.files().map(|file| file.path().display().to_string());
+        let names = self.all().map(|file| file.path().display().to_string());
         is_sent.then(|| "-".to_owned()).into_iter().chain(names).collect()
     }
 
-    /// The files, the shaded picture first.
-    fn files(&self) -> impl Iterator<Item = &OutputFile> {
+    /// All of the files, the shaded picture first.
+    pub(crate) fn all(&self) -> impl Iterator<Item = &OutputFile> {
         let color = self.color.as_ref().and_then(|(destination, _)| match destination {
             Destination::File(file) => Some(file),
             Destination::Standard => None,

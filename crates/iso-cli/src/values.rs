@@ -22,8 +22,7 @@ pub(crate) fn finite(text: &str) -> Result<f64, String> {
 /// The value of a formula without x, y and z.
 fn constant(text: &str) -> Option<f64> {
     let formula = Ast::parse(text).ok()?.lower(&[]).ok()?;
-    let program = formula.program();
-    (!formula.is_equation() && program.arguments() == 0).then(|| program.evaluate([0.0; 3])[0])
+    formula.value().filter(|_| !formula.is_equation())
 }
 
 /// A finite number above zero.

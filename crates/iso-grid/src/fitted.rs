@@ -8,7 +8,7 @@ use std::ops::Range;
 use glam::{DVec3, IVec3};
 use iso_expr::{BoxKernel, CompileError, Decorated};
 
-use crate::{Kernel, Region, Surface, Workspace};
+use crate::{Kernel, Region, RegionError, Surface, Workspace};
 use cells::{BEFORE, enclose};
 pub use sphere::Sphere;
 
@@ -71,18 +71,18 @@ impl Fitted {
 
     /// The least region that holds both, of surfaces that may be different ones. If it is larger than one of the two, what goes on outside of
     /// that may lie in it.
-    pub fn hull(&self, other: &Self) -> Self {
-        let region = self
-            .region
-            .hull(&other.region)
-            .expect("regions that are fitted are no farther than 2²¹ from the origin");
+    ///
+    /// # Errors
+    /// When its extent overflows, which that of regions found [around](Fitted::around) surfaces does not.
+    pub fn hull(&self, other: &Self) -> Result<Self, RegionError> {
+        let region = self.region.hull(&other.region)?;
         let is_both = self.region == region && other.region == region;
         // Where nothing is found there is nothing to look at.
         let sphere = match (self.sphere, other.sphere) {
             (Some(sphere), Some(other)) => Some(sphere.hull(&other)),
             (one, other) => one.or(other),
         };
-        Self { region, goes_on: is_both && self.goes_on && other.goes_on, sphere }
+        Ok(Self { region, goes_on: is_both && self.goes_on && other.goes_on, sphere })
     }
 
     /// A region close around the surface, or around a part of it near the origin.

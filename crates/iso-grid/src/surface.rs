@@ -79,10 +79,10 @@ impl Surface {
     }
 
     /// The same surface for methods that ask of F − C no more than its sign and where it is zero: that of
-    /// [another function](Program::told_by_signs) with the same signs if that is easier to follow, else this one.
+    /// [another function](Program::with_same_signs) with the same signs if that is easier to follow, else this one.
     pub fn by_signs(&self) -> &Self {
         let find = || {
-            let value = self.value.told_by_signs();
+            let value = self.value.with_same_signs();
             (value != self.value).then(|| self.another(Arc::clone(&self.engine), value))
         };
         self.by_signs.get_or_init(find).as_ref().unwrap_or(self)

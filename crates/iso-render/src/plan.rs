@@ -142,7 +142,7 @@ impl Buffer {
 impl Plan {
     /// Decides what a picture takes.
     pub fn new(wanted: &Wanted<'_>) -> Self {
-        let followed = is_certified(&wanted.method).then(|| wanted.program.told_by_signs());
+        let followed = is_certified(&wanted.method).then(|| wanted.program.with_same_signs());
         let wanted = &Wanted { program: followed.as_ref().unwrap_or(wanted.program), ..*wanted };
         Self {
             method: wanted.method,

@@ -14,6 +14,7 @@ use crate::{NodeId, Operation, Program};
 #[derive(Clone, Debug)]
 pub struct Formula {
     program: Program,
+    value: Option<f64>,
     is_equation: bool,
     parameters: Vec<(String, f64)>,
 }
@@ -21,12 +22,17 @@ pub struct Formula {
 impl Formula {
     /// F as it is, without parameters.
     pub(super) fn of_program(program: Program) -> Self {
-        Self { program, is_equation: false, parameters: Vec::new() }
+        Self { program, value: None, is_equation: false, parameters: Vec::new() }
     }
 
     /// F, the program's one output. For an equation it is the left side less the right side.
     pub fn program(&self) -> &Program {
         &self.program
+    }
+
+    /// F in doubles, NaN where it is undefined; `None` for a formula that names a coordinate, and for models.
+    pub fn value(&self) -> Option<f64> {
+        self.value
     }
 
     /// Whether the formula is an equation, whose surface is where F = 0, or a bare expression, which has levels.
@@ -76,6 +82,7 @@ impl Ast {
             None => left,
         };
         Ok(Formula {
+            value: lowering.builder.value(output),
             program: lowering.builder.finish(output),
             is_equation: self.right.is_some(),
             parameters,
@@ -349,6 +356,14 @@ mod tests {
         assert_eq!(formula.program().nodes(), [Node::Variable(Axis::X.into())]);
         let expected = [("a".to_owned(), std::f64::consts::SQRT_2), ("b".to_owned(), 20.085536923187668)];
         assert_eq!(formula.parameters(), expected);
+    }
+
+    #[test]
+    fn a_formula_without_coordinates_has_a_value() {
+        assert_eq!(lower("a := 2; sqrt(a) * pi").value(), Some(2f64.sqrt() * std::f64::consts::PI));
+        assert_eq!(lower("3 = 1").value(), Some(2.0));
+        assert!(lower("ln(-1)").value().unwrap().is_nan());
+        assert_eq!(lower("x - x").value(), None);
     }
 
     #[test]

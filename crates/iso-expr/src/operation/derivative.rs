@@ -74,10 +74,7 @@ impl Chain<'_> {
     }
 
     fn sum(&mut self, a: Option<NodeId>, b: Option<NodeId>) -> Option<NodeId> {
-        match (a, b) {
-            (Some(a), Some(b)) => Some(self.apply(Operation::Add, &[a, b])),
-            (one, other) => one.or(other),
-        }
+        self.program.sum(a, b)
     }
 
     fn difference(&mut self, a: Option<NodeId>, b: Option<NodeId>) -> Option<NodeId> {

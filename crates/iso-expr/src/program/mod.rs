@@ -194,9 +194,9 @@ impl Program {
     }
 
     /// A program whose output is negative, zero or positive, as a real function, wherever that of this one is, and undefined wherever it is, but
-    /// easier to follow to its zeros: differences of cubes are told by what is cubed, and polynomials as compositions of lower ones. Where the two
+    /// easier to follow to its zeros: sums of two cubes become sums of what is cubed, and polynomials compositions of lower ones. Where the two
     /// are zero their gradients have the same direction, if both have any.
-    pub fn told_by_signs(&self) -> Self {
+    pub fn with_same_signs(&self) -> Self {
         self.without_cubes().composed()
     }
 
@@ -225,6 +225,14 @@ impl Program {
         }
         let operand = |place: usize| *operands.get(place).unwrap_or(&operands[0]);
         self.intern(Node::Apply(operation, [operand(0), operand(1), operand(2)]))
+    }
+
+    /// The sum of what there is of two nodes.
+    pub(crate) fn sum(&mut self, a: Option<NodeId>, b: Option<NodeId>) -> Option<NodeId> {
+        match (a, b) {
+            (Some(a), Some(b)) => Some(self.apply(Operation::Add, &[a, b])),
+            (one, other) => one.or(other),
+        }
     }
 
     /// `base` multiplied by itself, `exponent` factors in all.

@@ -134,13 +134,6 @@ impl Program {
         let least = self.literal(f64::MIN_POSITIVE);
         self.apply(Operation::Maximum, &[size, least])
     }
-
-    fn sum(&mut self, a: Option<NodeId>, b: Option<NodeId>) -> Option<NodeId> {
-        match (a, b) {
-            (Some(a), Some(b)) => Some(self.apply(Operation::Add, &[a, b])),
-            (one, other) => one.or(other),
-        }
-    }
 }
 
 #[cfg(test)]

@@ -185,8 +185,8 @@ mod tests {
     fn where_nothing_is_found_there_is_nothing_to_look_at() {
         let [point, ball] = ["x^2 + y^2 + z^2 = 0", "x^2 + y^2 + z^2 = 1"].map(around);
         assert!(point.sphere.is_none() && ball.sphere.is_some());
-        assert_eq!([point.hull(&ball).sphere, ball.hull(&point).sphere], [ball.sphere; 2]);
-        assert_eq!(point.hull(&point).sphere, None);
+        assert_eq!([point.hull(&ball).unwrap().sphere, ball.hull(&point).unwrap().sphere], [ball.sphere; 2]);
+        assert_eq!(point.hull(&point).unwrap().sphere, None);
     }
 
     #[test]

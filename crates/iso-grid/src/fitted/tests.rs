@@ -120,8 +120,8 @@ fn what_is_met_first_in_the_largest_of_the_near_cubes_is_no_scrap() {
 #[test]
 fn of_two_regions_neither_may_hide_what_goes_on_outside_of_the_other() {
     let [near, far] = ["x^2 + y^2 = 1", "x^2 + y^2 + z^2 = 100"].map(around);
-    assert!(near.goes_on && near.hull(&near).goes_on);
-    assert!(!near.hull(&far).goes_on && !far.hull(&near).goes_on);
+    assert!(near.goes_on && near.hull(&near).unwrap().goes_on);
+    assert!(!near.hull(&far).unwrap().goes_on && !far.hull(&near).unwrap().goes_on);
 }
 
 /// Nearer cubes show corners of the hyperboloid, and its waist is farther out.

@@ -1,6 +1,7 @@
 //! What is to be drawn, how, and where it goes; and drawing it.
 
 use std::io::Write;
+use std::path::Path;
 use std::sync::Arc;
 
 use iso_expr::Engine;
@@ -14,6 +15,7 @@ use crate::clock::{Phases, add_to};
 use crate::engine::{engine, threads};
 use crate::failure::Failure;
 use crate::flags::RenderFlags;
+use crate::formula::file_of;
 use crate::interruption::Interruption;
 use crate::method::fitted;
 use crate::notes::Drawn;
@@ -73,13 +75,18 @@ impl Request {
         let engine = add_to(&mut compile, || engine(picture.engine.engine))?;
         let mut shots = shots(&flags, &engine, &interruption.stop())?;
         shots[0].phases.compile += compile;
+        let animation = flags.sequence.is_wanted().then(|| animation(&picture.output)).transpose()?.flatten();
+        if let Some(source) = file_of(&picture.formula.formula) {
+            let mut files = shots.iter().flat_map(|shot| shot.files.all()).chain(&animation);
+            files.try_for_each(|file| file.spares(Path::new(&source)))?;
+        }
         Ok(Self {
             shots,
             region: picture.method.region.region,
             smoothing,
             drawn,
             look: picture.output.look.look(),
-            animation: flags.sequence.is_wanted().then(|| animation(&picture.output)).transpose()?.flatten(),
+            animation,
             engine,
             threads: threads(&picture.threads)?,
             interruption,
@@ -149,7 +156,7 @@ impl Request {
             }
             add_to(&mut phases.compile, || subject.surface.by_signs().compile(Kernel::ValueEnclosures))?;
             let fitted = add_to(&mut phases.preprocess, || fitted(&subject.surface))?;
-            hull = Some(hull.map_or(fitted, |hull| hull.hull(&fitted)));
+            hull = Some(hull.map_or(Ok(fitted), |hull| hull.hull(&fitted))?);
             before = Some(Arc::clone(subject));
         }
         Ok(hull.expect("there is a picture to be drawn"))

@@ -6,7 +6,7 @@ use crate::operation::by_squaring;
 impl Builder {
     pub(super) fn sum(&mut self, x: Form, y: Form) -> Form {
         let middle = self.of(Operation::Add, x.middle, y.middle);
-        let slopes = [0, 1, 2].map(|place| self.plus(x.slopes[place], y.slopes[place]));
+        let slopes = [0, 1, 2].map(|place| self.0.sum(x.slopes[place], y.slopes[place]));
         self.combined(middle, slopes, x, y)
     }
 
@@ -22,7 +22,7 @@ impl Builder {
     /// A sum or difference with this middle and these slopes.
     fn combined(&mut self, middle: NodeId, slopes: [Option<NodeId>; 3], x: Form, y: Form) -> Form {
         let size = self.of(Operation::Add, x.size, y.size);
-        let rest = self.plus(x.rest, y.rest);
+        let rest = self.0.sum(x.rest, y.rest);
         Form { middle, slopes, rest: self.rounded(rest, size), size }
     }
 
@@ -37,7 +37,7 @@ impl Builder {
         let slopes = [0, 1, 2].map(|place| {
             let of_y = y.slopes[place].map(|slope| self.times(x.middle, slope));
             let of_x = x.slopes[place].map(|slope| self.times(y.middle, slope));
-            self.plus(of_y, of_x)
+            self.0.sum(of_y, of_x)
         });
         let [x_middle, y_middle] = [x.middle, y.middle].map(|middle| self.magnitude_of(middle));
         let of_y = y.rest.map(|rest| self.times(x_middle, rest));
@@ -46,8 +46,8 @@ impl Builder {
             (Some(x), Some(y)) => Some(self.times(x, y)),
             _ => None,
         };
-        let rest = self.plus(of_y, of_x);
-        let rest = self.plus(rest, of_both);
+        let rest = self.0.sum(of_y, of_x);
+        let rest = self.0.sum(rest, of_both);
         let size = self.times(x.size, y.size);
         let size = self.larger(size);
         Form { middle, slopes, rest: self.rounded(rest, size), size }
@@ -64,7 +64,7 @@ impl Builder {
             let half = self.scaled(0.5, deviation);
             let half = self.times(half, deviation);
             middle = self.of(Operation::Add, middle, half);
-            rest = self.plus(rest, Some(half));
+            rest = self.0.sum(rest, Some(half));
         }
         let size = self.times(x.size, x.size);
         let size = self.larger(size);
@@ -117,7 +117,7 @@ impl Builder {
             let part = self.times(rest, magnitude);
             self.times(part, magnitude)
         });
-        let rest = self.plus(rest, Some(half));
+        let rest = self.0.sum(rest, Some(half));
         let size = self.of(Operation::Divide, one, distance);
         let size = self.larger(size);
         Form { middle, slopes, rest: self.rounded(rest, size), size }

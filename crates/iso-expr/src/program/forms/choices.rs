@@ -34,7 +34,7 @@ impl Builder {
         let slopes = x.slopes.map(|slope| slope.map(|slope| self.times(sign, slope)));
         let magnitude = self.magnitude_of(sign);
         let rest = x.rest.map(|rest| self.times(magnitude, rest));
-        let rest = self.plus(rest, Some(off));
+        let rest = self.0.sum(rest, Some(off));
         Form { middle, slopes, rest: self.rounded(rest, x.size), size: x.size }
     }
 
@@ -50,7 +50,7 @@ impl Builder {
         let Chord { weight, other, half } = self.chord(difference);
         let mixed = self.mixture((weight, other), x, y);
         let middle = self.of(toward, mixed.middle, half);
-        let rest = self.plus(mixed.rest, Some(half));
+        let rest = self.0.sum(mixed.rest, Some(half));
         Form { middle, rest: self.rounded(rest, mixed.size), ..mixed }
     }
 
@@ -114,7 +114,7 @@ impl Builder {
         let between = self.scaled(0.5, magnitude);
         let is_known = self.of(Operation::Maximum, is_true, is_false);
         let off = self.either(is_known, zero, between);
-        let rest = self.plus(mixed.rest, Some(off));
+        let rest = self.0.sum(mixed.rest, Some(off));
         Form { rest: self.rounded(rest, mixed.size), ..mixed }
     }
 
@@ -131,7 +131,7 @@ impl Builder {
         let mut mixed = |x: Option<NodeId>, y: Option<NodeId>| {
             let x = x.map(|x| self.times(weight, x));
             let y = y.map(|y| self.times(other, y));
-            self.plus(x, y)
+            self.0.sum(x, y)
         };
         let middle = mixed(Some(x.middle), Some(y.middle)).expect("both are there");
         let slopes = [0, 1, 2].map(|place| mixed(x.slopes[place], y.slopes[place]));

@@ -149,7 +149,7 @@ impl Builder {
     ) -> Form {
         let slopes = x.slopes.map(|part| part.map(|part| self.times(slope, part)));
         let rest = x.rest.map(|rest| self.times(magnitude, rest));
-        let rest = self.plus(rest, Some(half));
+        let rest = self.0.sum(rest, Some(half));
         Form { middle, slopes, rest: self.rounded(rest, size), size }
     }
 

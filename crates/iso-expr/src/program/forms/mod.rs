@@ -171,16 +171,16 @@ impl Builder {
     /// How far numbers of a form are from its middle at most; `None` where it is one number.
     fn deviation(&mut self, form: Form) -> Option<NodeId> {
         let [a, b, c] = form.slopes.map(|slope| slope.map(|slope| self.magnitude_of(slope)));
-        let first = self.plus(a, b);
-        let second = self.plus(c, form.rest);
-        self.plus(first, second)
+        let first = self.0.sum(a, b);
+        let second = self.0.sum(c, form.rest);
+        self.0.sum(first, second)
     }
 
     /// What numbers of a form do not exceed.
     fn magnitude(&mut self, form: Form) -> NodeId {
         let middle = self.magnitude_of(form.middle);
         let deviation = self.deviation(form);
-        self.plus(Some(middle), deviation).expect("one of them is there")
+        self.0.sum(Some(middle), deviation).expect("one of them is there")
     }
 
     /// How far a form stays away from zero if that is positive, rounding considered.
@@ -194,7 +194,7 @@ impl Builder {
     /// Adds a bound of all roundings to the rest of a form of this size.
     fn rounded(&mut self, rest: Option<NodeId>, size: NodeId) -> Option<NodeId> {
         let rounding = self.scaled(ROUNDING, size);
-        self.plus(rest, Some(rounding))
+        self.0.sum(rest, Some(rounding))
     }
 }
 
@@ -221,14 +221,6 @@ impl Builder {
         match self.0.node(a) {
             Node::Constant(constant) => self.0.literal(constant.value().abs()),
             _ => self.0.apply(Operation::Absolute, &[a]),
-        }
-    }
-
-    /// A sum of what is there.
-    fn plus(&mut self, a: Option<NodeId>, b: Option<NodeId>) -> Option<NodeId> {
-        match (a, b) {
-            (Some(a), Some(b)) => Some(self.of(Operation::Add, a, b)),
-            (one, other) => one.or(other),
         }
     }
 

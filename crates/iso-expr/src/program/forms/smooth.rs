@@ -84,7 +84,7 @@ impl Builder {
             let off = self.of(Operation::Minimum, bend, deviation);
             let half = self.scaled(0.5, off);
             mixed.middle = self.of(Operation::Add, mixed.middle, half);
-            mixed.rest = self.plus(mixed.rest, Some(half));
+            mixed.rest = self.0.sum(mixed.rest, Some(half));
         }
         let one = self.0.literal(1.0);
         let size = self.of(Operation::Add, mixed.size, one);

@@ -33,7 +33,7 @@ impl Beam {
 
     /// Whether all components are finite, and of a size for which nothing overflows.
     pub(super) fn is_proportionate(&self) -> bool {
-        [self.origins, self.directions].iter().all(|spread| spread.largest() <= LARGEST)
+        [self.origins, self.directions].iter().all(|spread| spread.size.cmple(DVec3::splat(LARGEST)).all())
     }
 
     /// The corners of a box around the points of all rays in the region from `span.start` to `span.end`, which are not

@@ -23,8 +23,9 @@ const LARGEST_COUNTED: usize = 16;
 /// A larger beam is cut when more rays are likely to be followed in vain.
 const DOUBTFUL: usize = 16;
 
-/// Rounding so many times smaller than the tolerance does not matter.
-const SHARP: f64 = 64.0;
+/// Rounding that moves roots so many times less than the tolerance does not matter much: an enclosure has room for it on both sides, and as
+/// much is left.
+const SHARP: f64 = 4.0;
 
 impl Sight {
     /// `None` where nothing is known, or where roundings of F alone make enclosures wider than `tolerance`.
@@ -145,14 +146,11 @@ impl Subdivision<'_> {
         let bounds = self.beam(part.beam).bounds(form.reach, &self.certified.region)?;
         let sight =
             |rounding: &Rounding, beam: &Beam| Sight::new(form, tolerance, rounding.error(beam, form.reach));
-        // A bound on a larger box will do as long as it is nothing beside what is wanted. Where it was something, it is so nearby.
-        if self.memory.blurred != Some(part.kernels) {
-            let known = self.rounding_around(part.kernels, bounds);
-            let rough = known.and_then(|known| sight(&known, self.beam(part.beam)));
-            if rough.as_ref().is_some_and(|sight| SHARP * sight.blur < tolerance) {
-                return rough;
-            }
-            self.memory.blurred = Some(part.kernels);
+        // A bound on a larger box will do as long as it is little beside what is wanted.
+        let known = self.rounding_around(part.kernels, bounds);
+        let rough = known.and_then(|known| sight(&known, self.beam(part.beam)));
+        if rough.as_ref().is_some_and(|sight| SHARP * sight.blur < tolerance) {
+            return rough;
         }
         let exact = self.rounding(part.kernels, bounds)?;
         // If not, less of the stretch is looked at along a single ray where its root is, and rounding may be less there.

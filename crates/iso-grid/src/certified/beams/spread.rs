@@ -94,12 +94,6 @@ impl Spread {
         let none = DVec3::ZERO;
         Self { middle: vector, by_column: none, by_row: none, rest: none, radius: none, size: vector.abs() }
     }
-
-    /// The largest component of any of the vectors; NaN when one is NaN.
-    pub(super) fn largest(&self) -> f64 {
-        let sizes = self.size.to_array();
-        sizes.into_iter().fold(0.0, |largest, size| if size <= largest { largest } else { size })
-    }
 }
 
 /// How far (u + e)/|u + e| may be from its linear approximation in e, for a unit vector u and |e| ≤ `reach`.

@@ -67,8 +67,6 @@ pub(crate) struct Memory {
     pub(super) ended: Vec<Ended>,
     /// What was found out last of rounding.
     pub(super) rounding: Option<Rounding>,
-    /// The number of the kernels whose rounding was too large where it was bounded for neighbours too.
-    pub(super) blurred: Option<u32>,
 }
 
 /// The subdivision of a tile.
@@ -119,7 +117,7 @@ impl<'a> Subdivision<'a> {
         memory.ahead.clear();
         memory.beams.clear();
         memory.beams.push(beam);
-        (memory.rounding, memory.blurred) = (None, None);
+        memory.rounding = None;
         memory.attempts = Attempts::default();
         memory.open.clear();
         memory.open.resize(tile.len(), true);
