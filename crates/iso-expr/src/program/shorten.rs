@@ -186,8 +186,8 @@ impl Findings {
                 _ => None,
             });
         self.decisions[id.index()] = decision;
-        // Differences of doubles have the signs that those of real numbers have.
-        let exact = |operand: NodeId| match program.node(operand) {
+        // Sums and differences of doubles have the signs that those of real numbers have.
+        let exact = |number: usize| match program.node(operands[number]) {
             Node::Constant(constant) if constant.is_exact() => Some(constant.value()),
             _ => None,
         };
@@ -196,10 +196,16 @@ impl Findings {
             (Some(Decision::Negated), ..) | (None, O::Negate, _) => &[(0, demand.negated())],
             (Some(Decision::Constant(_)), ..) => &[],
             (None, O::Minimum | O::Maximum, _) => &[(0, demand), (1, demand)],
-            (None, O::Subtract, Demand::Side(0.0)) if let Some(of) = exact(operands[1]) => {
+            (None, O::Subtract, Demand::Side(0.0)) if let Some(of) = exact(1) => {
                 &[(0, Demand::Side(of)), (1, Demand::Value)]
             }
-            (None, O::Add, Demand::Side(0.0)) if let Some(of) = exact(operands[1]) => {
+            (None, O::Subtract, Demand::Side(0.0)) if let Some(of) = exact(0) => {
+                &[(0, Demand::Value), (1, Demand::Side(of))]
+            }
+            (None, O::Add, Demand::Side(0.0)) if let Some(of) = exact(0) => {
+                &[(0, Demand::Value), (1, Demand::Side(-of))]
+            }
+            (None, O::Add, Demand::Side(0.0)) if let Some(of) = exact(1) => {
                 &[(0, Demand::Side(-of)), (1, Demand::Value)]
             }
             (None, ..) => &[(0, Demand::Value), (1, Demand::Value), (2, Demand::Value)][..operation.arity()],

@@ -51,6 +51,8 @@ fn branches_that_do_not_matter_to_the_sign_are_left_out() {
         ("min(z - 0.5, x - 3)", 1),
         ("min(x, y + 0.5) = 0.6", 1),
         ("max(x, y - 0.5) + -0.6", 1),
+        ("min(x, y + 0.5) = -0.1", 1),
+        ("0.6 - min(x, y + 0.5)", 1),
         // It may be undefined, which is for the other to say.
         ("min(x, 9 + sqrt(y - 0.5))", 3),
     ]);
