@@ -132,7 +132,7 @@ impl PlanReport {
         if let Some(operations) = by_signs {
             writeln!(
                 writer,
-                "    rays are followed by {operations} operations with its signs, told by what is cubed and by lower polynomials"
+                "    rays are followed by {operations} operations of a function with its signs, of roots for cubes and of lower polynomials"
             )?;
         }
         for (title, lines) in [

@@ -25,7 +25,8 @@ pub struct Hit {
 pub enum Outcome {
     /// The ray crosses the surface.
     Hit(Hit),
-    /// The ray meets the surface without a proven crossing: a root of even multiplicity, a plateau.
+    /// The ray comes so close to the surface that rounding cannot tell a contact from a near miss, as at a root of even multiplicity or a
+    /// plateau.
     Touch(Hit),
     /// The method found no root. Whether that is proven is the method's to say.
     Miss,

@@ -29,7 +29,7 @@ const SCENES: [(&str, f64, &str); 42] = [
     ("max(0, x^2+y^2+z^2-1)", 1.5, "a plateau"),
     (BALLS, 1.6, "a union of balls"),
     (BOX, 1.6, "a rounded box with a hole, smoothly blended with a ball"),
-    ("(x^2+2.25y^2+z^2-1)^3 - x^2 z^3 - 0.1125y^2 z^3", 1.5, "a heart, told by roots of cubes"),
+    ("(x^2+2.25y^2+z^2-1)^3 - x^2 z^3 - 0.1125y^2 z^3", 1.5, "a heart, followed by roots of cubes"),
     ("(x^2+2.25y^2+z^2-1)^3 - x^2 z^3 - 0.1125y^2 z^3 - 1e-9", 1.5, "a heart, all but flat along a curve"),
     ("3.5 - 1/((x-0.9)^2+y^2+z^2) - 1/((x+0.9)^2+y^2+z^2) - 1/(x^2+(y-0.8)^2+z^2)", 2.2, "poles inside"),
     ("max(sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x), x^2+y^2+z^2-9)", 3.2, "curved edges"),

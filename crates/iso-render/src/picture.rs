@@ -12,7 +12,7 @@ use crate::{Layer, Size};
 pub enum Status {
     /// The ray crosses the surface.
     Hit,
-    /// The ray meets the surface without a proven crossing.
+    /// The ray comes so close to the surface that rounding cannot tell a contact from a near miss.
     Touch,
     /// The ray meets no surface.
     Miss,
@@ -38,7 +38,7 @@ impl From<&Outcome> for Status {
 pub struct StatusCounts {
     /// Pixels whose ray crosses the surface.
     pub hit: u64,
-    /// Pixels whose ray meets the surface without a proven crossing.
+    /// Pixels whose ray comes so close to the surface that rounding cannot tell a contact from a near miss.
     pub touch: u64,
     /// Pixels whose ray meets no surface.
     pub miss: u64,

@@ -1,4 +1,4 @@
-//! Differences of cubes, told by what is cubed.
+//! Sums of cubes, in place of which the sums of what is cubed have the same signs.
 //!
 //! A³ + B³·R, where R keeps its sign, is negative, zero or positive just where A + B·∛R is. Taubin's heart, (x² + 9/4·y² + z² − 1)³ −
 //! x²z³ − 9/80·y²z³, is such a sum: all along its waist, where A and z are zero, its gradient vanishes, and near it F is not monotone along any ray.
@@ -54,7 +54,7 @@ impl Product {
 }
 
 impl Program {
-    /// A program with the same signs and differences of cubes told by their roots: where F is one, or a minimum or maximum of such.
+    /// A program with the same signs and roots in place of cubes, where F is a sum of such, or a minimum or maximum of sums.
     pub(super) fn without_cubes(&self) -> Self {
         let are_signs = self.asked_for_signs();
         // Nothing is built of the many programs that have none.
@@ -249,25 +249,25 @@ mod tests {
         ];
         let mut random = Random::new(1);
         for formula in formulas {
-            let (whole, told) = (read(formula), read(formula).without_cubes());
+            let (whole, rooted) = (read(formula), read(formula).without_cubes());
             let mut decided = 0;
             for _ in 0..2000 {
                 let point = [0; 3].map(|_| random.below(4001) as f64 / 1000.0 - 2.0);
-                let [whole, told] = [&whole, &told].map(|program| enclosed_at(program, point));
-                assert!(whole.lo <= 0.0 || told.hi >= 0.0, "{formula} at {point:?}: {whole} and {told}");
-                assert!(whole.hi >= 0.0 || told.lo <= 0.0, "{formula} at {point:?}: {whole} and {told}");
-                decided += i32::from(!whole.contains_zero() && !told.contains_zero());
+                let [whole, rooted] = [&whole, &rooted].map(|program| enclosed_at(program, point));
+                assert!(whole.lo <= 0.0 || rooted.hi >= 0.0, "{formula} at {point:?}: {whole} and {rooted}");
+                assert!(whole.hi >= 0.0 || rooted.lo <= 0.0, "{formula} at {point:?}: {whole} and {rooted}");
+                decided += i32::from(!whole.contains_zero() && !rooted.contains_zero());
             }
             assert!(decided > 1900, "{formula}: {decided} signs");
         }
     }
 
     #[test]
-    fn cubes_are_told_by_roots() {
+    fn cubes_are_rooted_by_roots() {
         for formula in [HEART, "(x^2 + 2 y^2 + z^2 - 1)^3 = (x^2 + y^2/9) z^3", "z^6 x^2 / 3 - (x - y)^3"] {
-            let told = read(formula).without_cubes();
-            assert_eq!(count(&told, Operation::CubeRoot), 1, "{formula} became\n{told}");
-            assert!(told.operations() <= read(formula).operations(), "{formula} became\n{told}");
+            let rooted = read(formula).without_cubes();
+            assert_eq!(count(&rooted, Operation::CubeRoot), 1, "{formula} became\n{rooted}");
+            assert!(rooted.operations() <= read(formula).operations(), "{formula} became\n{rooted}");
         }
         assert_eq!(read("8 x^3 - 27 y^3").without_cubes().operations(), read("2 x - 3 y").operations());
     }
@@ -296,9 +296,9 @@ mod tests {
     }
 
     #[test]
-    fn each_of_several_is_told_by_itself() {
-        let told = read(&format!("max(y, -min(z, {HEART}, x^3 - 2 y^3))")).without_cubes();
-        assert_eq!(count(&told, Operation::CubeRoot), 1, "{told}");
-        assert_eq!(told.without_cubes(), told);
+    fn each_of_several_is_rooted_by_itself() {
+        let rooted = read(&format!("max(y, -min(z, {HEART}, x^3 - 2 y^3))")).without_cubes();
+        assert_eq!(count(&rooted, Operation::CubeRoot), 1, "{rooted}");
+        assert_eq!(rooted.without_cubes(), rooted);
     }
 }

@@ -37,7 +37,7 @@ impl Program {
         self.exponentials(sum).is_some()
     }
 
-    /// Whether it is, and of so many terms that their shares are told by quotients.
+    /// Whether it is, and of so many terms that quotients stand for their shares.
     pub(crate) fn has_quotients_for_shares(&self, sum: NodeId) -> bool {
         self.exponentials(sum).is_some_and(|exponentials| !exponentials.are_paired())
     }

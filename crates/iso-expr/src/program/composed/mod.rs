@@ -1,4 +1,4 @@
-//! Sums told as compositions of polynomials.
+//! Sums written as compositions of polynomials.
 //!
 //! Enclosures of x⁴ − 5x² are wide, for both terms are large where they nearly cancel; (x² − 5/2)² − 25/4 is the same, and each step
 //! is enclosed sharply. The higher the degree, the more is gained: between −1 and 1 the terms of Chebyshev's polynomial of degree 12 are up to 39,000
@@ -32,7 +32,7 @@ struct Sum {
 }
 
 impl Sum {
-    /// Adds a multiple of a power of a node; `None` where that cannot be told exactly.
+    /// Adds a multiple of a power of a node; `None` where that is not exact.
     fn add(&mut self, base: NodeId, exponent: usize, factor: f64) -> Option<()> {
         let known = self.polynomials.iter().position(|(other, _)| *other == base);
         let place = known.unwrap_or_else(|| {
@@ -93,7 +93,7 @@ enum Part {
 }
 
 impl Program {
-    /// A program for the same real function, undefined wherever this one's is, with polynomials told as compositions of polynomials, as far as the
+    /// A program for the same real function, undefined wherever this one's is, with polynomials written as compositions of polynomials, as far as the
     /// coefficients are doubles.
     pub(super) fn composed(&self) -> Self {
         let readers = self.readers();
@@ -174,7 +174,7 @@ impl Program {
     }
 
     /// What an outer sum comes to. Sums that others read too are taken as a whole, so that they are computed once. `None` where that is too much, or
-    /// cannot be told exactly.
+    /// is not exact.
     fn sum_at(&self, outer: NodeId, readers: &[u32]) -> Option<Sum> {
         let mut found = Sum::default();
         let mut ahead = vec![(outer, 1.0)];

@@ -16,7 +16,7 @@ const STEEPEST_OF_SHARES: f64 = 0.09623;
 /// 746 where that matters.
 const MARGIN: f64 = 1.0 + 1.0 / (1u64 << 32) as f64;
 
-/// Of a share that deviates more the range is told, not the slope.
+/// A share that deviates more is bounded by its range, not by its slope.
 const FAR: f64 = 2.0;
 
 /// The share of eˣ in eˣ + 1, at a number x.
