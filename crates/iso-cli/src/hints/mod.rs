@@ -7,8 +7,6 @@ mod polynomial;
 mod text;
 
 #[cfg(test)]
-mod precise;
-#[cfg(test)]
 mod tests;
 
 use std::fmt;

@@ -1,9 +1,11 @@
+mod precise;
+
 use astro_float::BigFloat;
 use iso_expr::random::Random;
 use iso_expr::{Ast, Program};
 
-use super::precise::{difference, error, exactly, product, sum, value};
 use super::*;
+use precise::{difference, error, exactly, product, sum, value};
 
 fn program(formula: &str) -> Program {
     Ast::parse(formula).unwrap().lower(&[]).unwrap().program().clone()

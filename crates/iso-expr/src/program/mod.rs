@@ -14,8 +14,6 @@ pub(crate) mod reference;
 mod rounding;
 mod shorten;
 mod simplify;
-#[cfg(test)]
-mod twofold;
 
 use std::hash::{Hash, Hasher};
 

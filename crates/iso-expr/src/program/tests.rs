@@ -1,3 +1,5 @@
+pub(super) mod twofold;
+
 use super::*;
 use crate::{Ast, Engine, Interpreter, Scratch};
 

@@ -18,9 +18,7 @@ mod stretch;
 mod walk;
 
 #[cfg(test)]
-mod closed_forms;
-#[cfg(test)]
-mod limits;
+mod tests;
 
 pub use direct::Direct;
 pub use grid::Grid;

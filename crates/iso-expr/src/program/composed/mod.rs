@@ -246,7 +246,7 @@ impl Program {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::program::twofold::{Twofold, exact};
+    use crate::program::tests::twofold::{Twofold, exact};
     use crate::random::Random;
     use crate::{Ast, Interval};
 

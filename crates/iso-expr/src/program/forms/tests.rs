@@ -1,5 +1,5 @@
 use super::PARTS;
-use crate::program::twofold::{ARITHMETIC, Twofold, exact};
+use crate::program::tests::twofold::{ARITHMETIC, Twofold, exact};
 use crate::random::Random;
 use crate::{Ast, Engine, Interpreter, Interval, Operation, Program, Scratch};
 

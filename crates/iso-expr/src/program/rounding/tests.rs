@@ -1,5 +1,5 @@
 use crate::engine::{Boxes, Enclosures};
-use crate::program::twofold::{ARITHMETIC, Twofold, exact};
+use crate::program::tests::twofold::{ARITHMETIC, Twofold, exact};
 use crate::random::Random;
 use crate::{
     Ast, Axis, BoxKernel, Decorated, Decoration, Engine, Interpreter, Interval, Operation, Program, Scratch,

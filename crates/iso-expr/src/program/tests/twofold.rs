@@ -1,39 +1,38 @@
 //! Nearly exact values of programs, for tests.
 
-use super::{Node, Program};
-use crate::Operation;
+use crate::{Node, Operation, Program};
 
 /// A number held as the sum of two doubles (Dekker, A floating-point technique for extending the available precision,
 /// Numerische Mathematik 18, 1971): some 106 bits, next to which the rounding of doubles is coarse.
 #[derive(Clone, Copy)]
-pub(super) struct Twofold(pub(super) f64, pub(super) f64);
+pub(in crate::program) struct Twofold(pub(in crate::program) f64, pub(in crate::program) f64);
 
 impl Twofold {
     /// The exact sum of two doubles.
-    pub(super) fn of_sum(a: f64, b: f64) -> Self {
+    pub(in crate::program) fn of_sum(a: f64, b: f64) -> Self {
         let sum = a + b;
         let of_b = sum - a;
         Self(sum, (a - (sum - of_b)) + (b - of_b))
     }
 
-    pub(super) fn plus(self, other: Self) -> Self {
+    pub(in crate::program) fn plus(self, other: Self) -> Self {
         let Self(sum, rest) = Self::of_sum(self.0, other.0);
         let Self(low, least) = Self::of_sum(self.1, other.1);
         let Self(sum, rest) = Self::of_sum(sum, rest + low);
         Self::of_sum(sum, rest + least)
     }
 
-    pub(super) fn negated(self) -> Self {
+    pub(in crate::program) fn negated(self) -> Self {
         Self(-self.0, -self.1)
     }
 
-    pub(super) fn times(self, other: Self) -> Self {
+    pub(in crate::program) fn times(self, other: Self) -> Self {
         let product = self.0 * other.0;
         let rest = self.0.mul_add(other.0, -product) + (self.0 * other.1 + self.1 * other.0);
         Self::of_sum(product, rest)
     }
 
-    pub(super) fn over(self, other: Self) -> Self {
+    pub(in crate::program) fn over(self, other: Self) -> Self {
         let mut quotient = Self(self.0 / other.0, 0.0);
         for _ in 0..2 {
             let rest = self.plus(quotient.times(other).negated());
@@ -42,18 +41,18 @@ impl Twofold {
         quotient
     }
 
-    pub(super) fn root(self) -> Self {
+    pub(in crate::program) fn root(self) -> Self {
         let root = Self(self.0.sqrt(), 0.0);
         if root.0 == 0.0 { root } else { root.plus(self.over(root)).times(Self(0.5, 0.0)) }
     }
 
-    pub(super) fn is_below(self, other: Self) -> bool {
+    pub(in crate::program) fn is_below(self, other: Self) -> bool {
         self.0 < other.0 || self.0 == other.0 && self.1 < other.1
     }
 }
 
 /// The operations that [`exact`] knows.
-pub(super) const ARITHMETIC: [Operation; 10] = [
+pub(in crate::program) const ARITHMETIC: [Operation; 10] = [
     Operation::Add,
     Operation::Subtract,
     Operation::Multiply,
@@ -67,7 +66,7 @@ pub(super) const ARITHMETIC: [Operation; 10] = [
 ];
 
 /// The program's outputs at `point`, nearly exactly.
-pub(super) fn exact(program: &Program, point: [f64; 3]) -> Vec<Twofold> {
+pub(in crate::program) fn exact(program: &Program, point: [f64; 3]) -> Vec<Twofold> {
     let mut values: Vec<Twofold> = Vec::new();
     for node in program.nodes() {
         let value = match node {
