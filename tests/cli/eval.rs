@@ -46,6 +46,21 @@ fn results_do_not_take_the_place_of_what_is_read() {
 }
 
 #[test]
+fn what_is_undefined_has_no_derivatives() {
+    let case = Case::new();
+    case.run(&["eval", "ln(x)", "--at=-2,0,0", "--gradient"])
+        .exits(0)
+        .prints("value,dx,dy,dz\nnan,nan,nan,nan\n");
+    let with_errors = case.run(&["eval", "ln(x)", "--at=-2,0,0", "--gradient", "--error"]).exits(0).stdout();
+    assert_eq!(with_errors.lines().last(), Some(&*["nan"; 12].join(",")));
+    case.file("boxes.csv", "x_lo,x_hi,y_lo,y_hi,z_lo,z_hi\n-3,-2,0,0,0,0\n0.5,1.5,0,0,0,0\n");
+    let undefined = case.run(&["eval", "ln(x)", "--boxes", "boxes.csv", "--gradient"]).exits(0).stdout();
+    assert_eq!(undefined.lines().nth(1), Some(&*["empty,empty,trv"; 4].join(",")));
+    let jumps = case.run(&["eval", "floor(x)", "--boxes", "boxes.csv", "--gradient"]).exits(0).stdout();
+    assert_eq!(jumps.lines().nth(2), Some("0,1,def,0,0,trv,0,0,trv,0,0,trv"));
+}
+
+#[test]
 fn points_can_be_given_without_a_table() {
     let case = Case::new();
     for engine in ENGINES {

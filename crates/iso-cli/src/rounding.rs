@@ -38,7 +38,7 @@ impl Rounded {
 }
 
 /// The values at `points` with their errors, laid out as for [`BatchKernel`]. Both kernels are of one program, which has
-/// `outputs` outputs.
+/// `outputs` outputs: a value, and its derivatives, which it has nowhere where it is undefined itself.
 pub(crate) fn rounded(
     values: &dyn BatchKernel,
     enclosures: &dyn BoxKernel,
@@ -53,7 +53,13 @@ pub(crate) fn rounded(
     let room = Enclosures { lo: &mut lo, hi: &mut hi, decoration: &mut decoration };
     enclosures.evaluate(scratch, Boxes { lo: points, hi: points }, room);
     let ends = lo.into_iter().zip(hi);
-    found.into_iter().zip(ends).map(|(value, (lo, hi))| Rounded::new(value, Interval { lo, hi })).collect()
+    let undefined = Rounded { value: f64::NAN, error: f64::NAN };
+    let is_undefined = |place: usize| found[place % points[0].len()].is_nan();
+    let rounded = |(place, (lo, hi))| Rounded::new(found[place], Interval { lo, hi });
+    let of = |(place, ends)| {
+        if is_undefined(place) && place >= points[0].len() { undefined } else { rounded((place, ends)) }
+    };
+    ends.enumerate().map(of).collect()
 }
 
 #[cfg(test)]

@@ -154,6 +154,15 @@ fn nothing_but_a_root_is_a_root() {
     }
 }
 
+/// Beside 0/0 enclosures of quotients are wide however small the stretch is. F is −1, −1/2, −1 and 3.2 there.
+#[test]
+fn beside_an_undefined_quotient_nothing_is_touched() {
+    for formula in ["x/x - 2", "sin(x)/x - 1.5", "(exp(x)-1)/x - 2", "(x^2-1e-2)/(x-0.1) + 3"] {
+        let outcome = end(formula, 1.5, DVec3::new(-1.1, 0.3, 0.3), DVec3::new(1.0, 0.1, 0.0));
+        assert!(matches!(outcome, Outcome::Miss | Outcome::Undecided(_)), "{formula}: {outcome:?}");
+    }
+}
+
 #[test]
 fn a_root_behind_jumps_poles_and_edges_is_found() {
     for (formula, t) in [

@@ -62,7 +62,11 @@ fn at_points(
         let count = batch[0].len();
         values.resize(outputs * count, 0.0);
         kernel.evaluate(&mut scratch, &batch, &mut values);
-        let fields = |row| (0..outputs).map(|output| digits(values[output * count + row])).collect();
+        // Where F is undefined it has no derivatives, whatever their formulas give.
+        let found = |row: usize, output: usize| {
+            if values[row].is_nan() { f64::NAN } else { values[output * count + row] }
+        };
+        let fields = |row| (0..outputs).map(|output| digits(found(row, output))).collect();
         (0..count).map(fields).collect()
     })
 }
@@ -132,6 +136,7 @@ fn over_boxes(
             let batch = Boxes { lo: [x_lo, y_lo, z_lo], hi: [x_hi, y_hi, z_hi] };
             let mut found = Found::with_room(rows.len() * outputs);
             kernel.evaluate(&mut scratch, batch, found.enclosures());
+            found.limit_derivatives(rows.len());
             for row in 0..rows.len() {
                 table.row(found.fields((0..outputs).map(|output| output * rows.len() + row)))?;
             }
@@ -176,6 +181,20 @@ impl Found {
 
     fn enclosures(&mut self) -> Enclosures<'_> {
         Enclosures { lo: &mut self.lo, hi: &mut self.hi, decoration: &mut self.decoration }
+    }
+
+    /// Derivatives of F over `count` boxes exist where F is defined and continuous at most: elsewhere nothing is said of them but what they are
+    /// where they are.
+    fn limit_derivatives(&mut self, count: usize) {
+        for place in count..self.lo.len() {
+            let of_value = place % count;
+            if self.decoration[of_value] < Decoration::Continuous {
+                self.decoration[place] = Decoration::Trivial;
+            }
+            if self.lo[of_value].is_nan() {
+                (self.lo[place], self.hi[place]) = (f64::NAN, f64::NAN);
+            }
+        }
     }
 
     fn fields(&self, places: impl Iterator<Item = usize>) -> impl Iterator<Item = String> {

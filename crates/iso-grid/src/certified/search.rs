@@ -1,7 +1,7 @@
 //! The search for the first root along a ray, front to back.
 
-use iso_expr::Decoration;
 use iso_expr::interval::{round_down, round_up};
+use iso_expr::{Decoration, Interval};
 
 use super::classify::{Finding, classify, free_of_zero};
 use super::clip::Clip;
@@ -71,6 +71,13 @@ impl Way<'_> {
 pub(crate) struct Ahead {
     stretch: Span,
     finding: Finding,
+}
+
+/// Whether F, in `value` at a point, may be zero there, or is much nearer to it than at one of two points around it: where it is not, as beside
+/// 0/0, it is only that its enclosures are wide.
+fn is_lower(value: Interval, around: [Interval; 2]) -> bool {
+    let distance = value.lo.max(-value.hi);
+    distance <= 0.0 || around.into_iter().any(|other| 2.0 * distance < other.magnitude())
 }
 
 impl Search<'_> {
@@ -171,7 +178,7 @@ impl Search<'_> {
         if value.decoration < Decoration::Continuous {
             return (!self.pieces_are_free(stretch)).then_some(Outcome::Undecided(stretch));
         }
-        let mut valley = None;
+        let (mut valley, mut around) = (None, [Interval::ENTIRE; 2]);
         let mut margin = (stretch.end - stretch.start).max(self.resolution(stretch));
         for _ in 0..WIDENINGS {
             let wide =
@@ -180,7 +187,8 @@ impl Search<'_> {
             let course = self.line.course(wide);
             let [before, after, ..] =
                 self.line.courses(&[wide.start, wide.end].map(|t| Span { start: t, end: t }));
-            match classify(wide, course, before.value.interval, after.value.interval) {
+            around = [before.value.interval, after.value.interval];
+            match classify(wide, course, around[0], around[1]) {
                 None => return None,
                 Some((narrowed, Finding::Crossing)) => return self.place(narrowed),
                 Some(_) => margin *= 4.0,
@@ -199,6 +207,9 @@ impl Search<'_> {
         let bottom = valley.map(|valley| self.line.extremum(valley).clamp(outer.start, outer.end));
         let bottom = bottom.filter(|t| !free_of_zero(self.line.value_at(*t)));
         let t = bottom.unwrap_or(stretch.start + 0.5 * (stretch.end - stretch.start));
+        if !is_lower(self.line.value_at(t), around) {
+            return Some(Outcome::Undecided(stretch));
+        }
         let bracket = Span { start: stretch.start.min(t), end: stretch.end.max(t) };
         Some(Outcome::Touch(Hit { t, bracket }))
     }

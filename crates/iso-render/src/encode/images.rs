@@ -5,6 +5,7 @@ use std::path::Path;
 
 use image::codecs::jpeg::JpegEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::codecs::pnm::{PnmEncoder, PnmSubtype, SampleEncoding};
 use image::{ExtendedColorType, ImageEncoder};
 
 use crate::{EncodeError, Picture};
@@ -78,6 +79,12 @@ impl Picture {
             image::ImageFormat::Jpeg => {
                 JpegEncoder::new_with_quality(writer, 95).write_image(bytes, width, height, color)?;
             }
+            // The usual form, which is not what is chosen for a name by itself.
+            image::ImageFormat::Pnm => {
+                PnmEncoder::new(writer)
+                    .with_subtype(PnmSubtype::Pixmap(SampleEncoding::Binary))
+                    .write_image(bytes, width, height, color)?;
+            }
             other => image::write_buffer_with_format(&mut writer, bytes, width, height, color, other)?,
         }
         Ok(())
@@ -129,6 +136,14 @@ mod tests {
             let read = image::load_from_memory_with_format(file.get_ref(), format.0).unwrap().into_rgb8();
             assert_eq!((read.dimensions(), read.as_raw().as_slice()), ((3, 2), picture.color.as_flattened()));
         }
+    }
+
+    /// Of the forms of its family, the one that programs read.
+    #[test]
+    fn a_pixmap_is_one() {
+        let mut file = Cursor::new(Vec::new());
+        picture().write_color(ImageFormat::of(Path::new("a.ppm")).unwrap(), &mut file).unwrap();
+        assert!(file.get_ref().starts_with(b"P6\n"));
     }
 
     #[test]

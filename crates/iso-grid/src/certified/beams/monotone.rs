@@ -15,7 +15,7 @@ use crate::{Kernel, Outcome, Span, Workspace};
 const ROOM: f64 = 1.1;
 
 /// Beams of so many columns and rows are not cut just since not all of their rays have a root.
-const SMALL: usize = 4;
+const SMALL: usize = 8;
 
 /// Of beams of more columns or rows only the corners are asked whether they hit.
 const LARGEST_COUNTED: usize = 16;

@@ -27,7 +27,7 @@ const SLICES: usize = BATCH;
 
 /// A stretch is cut, and not the beam, when it is longer than this many times the beam's width; and then into stretches
 /// about so long.
-const LONG: f64 = 2.0;
+const LONG: f64 = 1.5;
 
 /// Beams of so many columns and rows are not cut further, and left to their rays where F is not monotone.
 const SMALLEST: usize = 2;
