@@ -53,11 +53,14 @@ pub(crate) fn rounded(
     let room = Enclosures { lo: &mut lo, hi: &mut hi, decoration: &mut decoration };
     enclosures.evaluate(scratch, Boxes { lo: points, hi: points }, room);
     let ends = lo.into_iter().zip(hi);
-    let undefined = Rounded { value: f64::NAN, error: f64::NAN };
-    let is_undefined = |place: usize| found[place % points[0].len()].is_nan();
-    let rounded = |(place, (lo, hi))| Rounded::new(found[place], Interval { lo, hi });
-    let of = |(place, ends)| {
-        if is_undefined(place) && place >= points[0].len() { undefined } else { rounded((place, ends)) }
+    let rows = points[0].len();
+    let of = |(place, (lo, hi)): (usize, (f64, f64))| {
+        let is_derivative = place >= rows;
+        if is_derivative && found[place % rows].is_nan() {
+            Rounded { value: f64::NAN, error: f64::NAN }
+        } else {
+            Rounded::new(found[place], Interval { lo, hi })
+        }
     };
     ends.enumerate().map(of).collect()
 }
