@@ -226,3 +226,12 @@ fn what_needs_too_much_room_for_native_code_is_interpreted() {
     }
     assert_eq!(case.content("jit.png"), case.content("interp.png"));
 }
+
+#[test]
+fn a_parameter_has_one_value() {
+    let case = Case::new();
+    let twice = ["eval", "a := 1; a x", "--at", "1,2,3", "--set", "a=2", "--set", "a=3"];
+    case.run(&twice).exits(2).mentions("several values are given to a");
+    let swept = ["render", "a := 1; a x", "--sweep", "a=1:2", "--sweep", "a=5:9", "--frames", "2"];
+    case.run(&swept).exits(2).mentions("several values are given to a");
+}

@@ -65,6 +65,13 @@ impl Source {
 
     /// The program of a text of this source, with other values for some of its parameters.
     pub(crate) fn lower(&self, text: &Text, settings: &[Setting]) -> Result<Formula, Failure> {
+        let is_repeated = |&(place, setting): &(usize, &Setting)| {
+            settings[..place].iter().any(|earlier| earlier.name == setting.name)
+        };
+        if let Some((_, setting)) = settings.iter().enumerate().find(is_repeated) {
+            let problem = format!("several values are given to {}", setting.name);
+            return Err(Failure::usage(problem, "leave out all but one of them"));
+        }
         let settings: Vec<(String, f64)> =
             settings.iter().map(|setting| (setting.name.clone(), setting.value)).collect();
         match text {
