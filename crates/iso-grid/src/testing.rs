@@ -9,7 +9,7 @@ use iso_expr::{
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-use crate::{Outcome, Ray, Surface, Tracer, Workspace};
+use crate::{Outcome, Ray, Surface, Tracer, Workspace, normals};
 
 /// F − C at a point.
 pub(crate) type Function = fn(DVec3) -> f64;
@@ -80,6 +80,14 @@ pub(crate) fn trace(tracer: &dyn Tracer, ray: Ray) -> Outcome {
     let mut outcomes = [Outcome::Miss];
     tracer.trace(&mut Workspace::default(), &[ray], &mut outcomes);
     outcomes[0]
+}
+
+/// The normal where a ray ends.
+pub(crate) fn normal(surface: &Surface, ray: Ray, outcome: Outcome) -> DVec3 {
+    let mut found = [DVec3::NAN];
+    normals(surface, None, &mut Workspace::default(), [ray].as_slice().into(), &[outcome], &mut found)
+        .expect("functions are not compiled");
+    found[0]
 }
 
 /// Property tests of this many cases, the same at every run.

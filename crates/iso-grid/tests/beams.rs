@@ -326,11 +326,6 @@ fn unrelated_rays_may_be_called_a_tile() {
         let view = View { name: "strange", rays: rays.clone(), width: 8, raster: None };
         assert_eq!(together(&tracer, &view), [alone(&tracer, &rays)], "{strange}");
     }
-    // Of numbers between whose differences there is none.
-    let huge = [-1.7e308, 1.7e308, 1.7e308, -1.7e308].map(|x| DVec3::new(x, 0.1, -4.0));
-    let rays = huge.map(|origin| Ray { origin, direction: DVec3::Z });
-    let view = View { name: "huge", rays: rays.to_vec(), width: 2, raster: None };
-    assert_eq!(together(&tracer, &view), [alone(&tracer, &rays)]);
 }
 
 /// They leave the region at no t that a double holds.

@@ -124,6 +124,12 @@ fn of_two_regions_neither_may_hide_what_goes_on_outside_of_the_other() {
     assert!(!near.hull(&far).unwrap().goes_on && !far.hull(&near).unwrap().goes_on);
 }
 
+#[test]
+fn regions_without_a_hull_have_none() {
+    let at = |from: f64, to: f64| Fitted::from(Region::new(DVec3::splat(from), DVec3::splat(to)).unwrap());
+    assert!(at(-1e308, -9e307).hull(&at(9e307, 1e308)).is_err());
+}
+
 /// Nearer cubes show corners of the hyperboloid, and its waist is farther out.
 #[test]
 fn scraps_are_not_taken_for_the_surface() {

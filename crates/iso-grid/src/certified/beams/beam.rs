@@ -123,3 +123,22 @@ pub(super) fn count_in(region: &Region, tile: &Tile<'_>, area: Area) -> u64 {
     }
     area.quarters().map(|quarter| count_in(region, tile, quarter)).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Ray;
+
+    #[test]
+    fn beams_whose_rays_are_farther_apart_than_any_double_are_out_of_proportion() {
+        let is_proportionate = |far: f64| {
+            let rays =
+                [-far, far, far, -far].map(|x| Ray { origin: DVec3::new(x, 0.1, -4.0), direction: DVec3::Z });
+            let area = Area { column: 0, row: 0, width: 2, height: 2 };
+            Beam::new(&Tile::listed(&rays, 2), area).is_proportionate()
+        };
+        assert!(is_proportionate(1.0));
+        // From corner to corner both differences overflow, with unlike signs.
+        assert!(!is_proportionate(1.7e308));
+    }
+}

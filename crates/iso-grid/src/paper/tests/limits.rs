@@ -3,10 +3,9 @@
 
 use glam::DVec3;
 
-use crate::testing::{Function, surface, surface_without_gradient, trace};
+use crate::testing::{Function, normal, surface, surface_without_gradient, trace};
 use crate::{
     Direct, Grid, GridError, GridSettings, Octree, Outcome, Ray, Region, RootFinding, Surface, Tracer,
-    Workspace, normals,
 };
 
 fn methods(surface: &Surface, region: Region, settings: &GridSettings) -> Vec<Box<dyn Tracer>> {
@@ -168,17 +167,7 @@ fn rays_that_are_no_rays_are_missed() {
 /// The normal where a ray along x from x = −2 meets a surface.
 fn normal_along_x(value: Function, gradient: fn(DVec3) -> DVec3, outcome: Outcome) -> DVec3 {
     let ray = Ray { origin: DVec3::new(-2.0, 0.0, 0.0), direction: DVec3::X };
-    let mut found = [DVec3::NAN];
-    normals(
-        &surface(value, gradient),
-        None,
-        &mut Workspace::default(),
-        [ray].as_slice().into(),
-        &[outcome],
-        &mut found,
-    )
-    .unwrap();
-    found[0]
+    normal(&surface(value, gradient), ray, outcome)
 }
 
 #[test]
