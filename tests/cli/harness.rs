@@ -83,10 +83,10 @@ pub(crate) struct Started {
 }
 
 impl Started {
-    /// Sends the signal of Ctrl-C.
+    /// Sends the signal of this name; that of Ctrl-C is `INT`.
     #[cfg(unix)]
-    pub(crate) fn interrupt(&self) {
-        let sent = Command::new("kill").args(["-INT", &self.child.id().to_string()]).status();
+    pub(crate) fn send(&self, signal: &str) {
+        let sent = Command::new("kill").args([&format!("-{signal}"), &self.child.id().to_string()]).status();
         assert!(sent.expect("kill can be started").success(), "{} ended early", self.command);
     }
 

@@ -107,31 +107,35 @@ fn times_that_are_none_are_refused() {
 }
 
 #[cfg(unix)]
-fn interrupted(case: &Case, time: Duration, more: &[&str]) -> Run {
+fn interrupted(case: &Case, (signal, time): (&str, Duration), more: &[&str]) -> Run {
     let started = case.start(&[&LONG[..], more].concat());
     std::thread::sleep(time);
-    started.interrupt();
+    started.send(signal);
     started.end()
 }
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_leaves_no_file() {
+fn signals_leave_no_file() {
     let case = Case::new();
     case.file("out.ppm", "the old one");
-    // A signal that comes before the program listens ends it without an exit code.
-    let times = (0..8).map(|doublings| Duration::from_millis(400 << doublings));
-    let run = times.map(|time| interrupted(&case, time, &[])).find(|run| run.code().is_some());
-    run.expect("iso listens within a minute").exits(130).prints("");
-    assert_eq!(case.names(), ["out.ppm"]);
-    assert_eq!(case.content("out.ppm"), b"the old one");
+    // That of Ctrl-C, a request to end, and that of a terminal that is closed.
+    for signal in ["INT", "TERM", "HUP"] {
+        // One that comes before the program listens ends it without an exit code.
+        let times = (0..8).map(|doublings| Duration::from_millis(400 << doublings));
+        let run = times.map(|time| interrupted(&case, (signal, time), &[])).find(|run| run.code().is_some());
+        run.expect("iso listens within a minute").exits(130).prints("");
+        assert_eq!(case.names(), ["out.ppm"]);
+        assert_eq!(case.content("out.ppm"), b"the old one");
+    }
 }
 
 #[cfg(unix)]
 #[test]
 fn ctrl_c_keeps_the_finished_tiles_when_asked_to() {
     let case = Case::new();
-    let run = until_something_is_finished(|time| interrupted(&case, time, &["--keep-partial", "--json"]));
+    let run =
+        until_something_is_finished(|time| interrupted(&case, ("INT", time), &["--keep-partial", "--json"]));
     let run = run.exits(130).mentions("error: stopped by Ctrl-C: ");
     let unfinished = run.json()["pixels"]["unfinished"].as_u64().unwrap();
     assert!(0 < unfinished && unfinished < 9_000_000, "{unfinished}");

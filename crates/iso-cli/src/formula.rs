@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use iso_expr::limits::{LARGEST_MODEL, LARGEST_TEXT};
 use iso_expr::{Ast, Formula, FormulaError, Program};
@@ -25,8 +25,8 @@ pub(crate) struct Source {
 const TYPED: &str = "formula";
 
 /// Whether the file of this name holds a model.
-fn is_model(name: &str) -> bool {
-    Path::new(name).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vm"))
+fn is_model(name: impl AsRef<Path>) -> bool {
+    name.as_ref().extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vm"))
 }
 
 /// A formula that was read.
@@ -44,7 +44,7 @@ impl Source {
             b"-" => ("standard input".to_owned(), read_up_to(LARGEST_TEXT, io::stdin().lock())),
             b"@" => return Err(Failure::usage("`@` names no file", "write `@formula.txt`")),
             bytes => match file_of(argument) {
-                Some(path) => read_file(path),
+                Some(path) => (path.display().to_string(), read_file(&path)),
                 None => (TYPED.to_owned(), Ok(bytes.to_vec())),
             },
         };
@@ -100,19 +100,18 @@ impl Source {
 }
 
 /// The file that a formula is read from, `@file` or `model.vm`; `None` of one that was typed.
-pub(crate) fn file_of(argument: &OsStr) -> Option<String> {
+pub(crate) fn file_of(argument: &OsStr) -> Option<PathBuf> {
     let argument = argument.to_string_lossy();
     match argument.strip_prefix('@') {
-        Some(path) => Some(path.to_owned()),
-        None => is_model(&argument).then(|| argument.into_owned()),
+        Some(path) => Some(path.into()),
+        None => is_model(&*argument).then(|| argument.into_owned().into()),
     }
 }
 
-/// The file's name and what is in it.
-fn read_file(path: String) -> (String, io::Result<Vec<u8>>) {
-    let largest = if is_model(&path) { LARGEST_MODEL } else { LARGEST_TEXT };
-    let read = File::open(&path).and_then(|file| read_up_to(largest, file));
-    (path, read)
+/// What is in a file.
+fn read_file(path: &Path) -> io::Result<Vec<u8>> {
+    let largest = if is_model(path) { LARGEST_MODEL } else { LARGEST_TEXT };
+    read_up_to(largest, File::open(path)?)
 }
 
 /// What a source holds, or so much of it that it is seen to be longer than the largest that is allowed.

@@ -17,8 +17,8 @@ pub(crate) const INTERRUPTED: u8 = 130;
 /// The work that Ctrl-C ends gently, so that what is finished is written.
 static KEPT: OnceLock<Interruption> = OnceLock::new();
 
-/// From now on, Ctrl-C leaves no half-written file, nor does a request to end or a terminal that is closed. It ends the program unless some work is to be kept; a second one always
-/// does.
+/// From now on, Ctrl-C, a request to end and a terminal that is closed leave no half-written file. They end the program unless some work
+/// is to be kept; a second one always does.
 pub(crate) fn listen() -> Result<(), Failure> {
     ctrlc::set_handler(|| {
         let is_gentle = KEPT.get().is_some_and(|work| work.end(Cause::CtrlC));

@@ -1,6 +1,6 @@
 //! `iso eval`: values of a formula at points, enclosures over boxes.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use iso_expr::engine::{Boxes, Enclosures};
@@ -22,7 +22,7 @@ pub(crate) fn run(flags: EvalFlags) -> Result<(), Failure> {
     let places = &flags.places;
     let form = flags.table.form();
     let destination = Destination::new(flags.table.output)?;
-    let formula_file = file_of(&flags.formula.formula).map(PathBuf::from);
+    let formula_file = file_of(&flags.formula.formula);
     let mut sources = places.boxes.iter().chain(&places.points).chain(&formula_file);
     sources.try_for_each(|source| destination.spares(source))?;
     let value = minus_level(&understand(&flags.formula)?, flags.level.level)?.simplified();

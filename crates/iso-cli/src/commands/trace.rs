@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 use std::iter;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::DVec3;
 use iso_expr::CompileError;
@@ -31,7 +31,7 @@ pub(crate) fn run(flags: TraceFlags) -> Result<(), Failure> {
     let method = method(&flags.method)?;
     let form = flags.table.form();
     let destination = Destination::new(flags.table.output)?;
-    let formula_file = file_of(&flags.formula.formula).map(PathBuf::from);
+    let formula_file = file_of(&flags.formula.formula);
     let mut sources = flags.rays.rays.iter().chain(&formula_file);
     sources.try_for_each(|source| destination.spares(source))?;
     let formula = understand(&flags.formula)?;

@@ -91,7 +91,8 @@ Examples:
   iso eval 'sin(x)*y' --points points.csv --gradient
   iso explain 'x^2 + y^2 - z'
 
-Exit codes: 0 done, 1 failed, 2 bad usage or bad formula, 3 stopped by --time-limit, 130 stopped by Ctrl-C.";
+Exit codes: 0 done, 1 failed, 2 bad usage or bad formula, 3 stopped by --time-limit, 130 stopped by Ctrl-C or \
+a signal to end.";
 
 const COMPLETION_EXAMPLES: &str = "\
 Examples:

@@ -1,7 +1,6 @@
 //! What is to be drawn, how, and where it goes; and drawing it.
 
 use std::io::Write;
-use std::path::Path;
 use std::sync::Arc;
 
 use iso_expr::Engine;
@@ -78,7 +77,7 @@ impl Request {
         let animation = flags.sequence.is_wanted().then(|| animation(&picture.output)).transpose()?.flatten();
         if let Some(source) = file_of(&picture.formula.formula) {
             let mut files = shots.iter().flat_map(|shot| shot.files.all()).chain(&animation);
-            files.try_for_each(|file| file.spares(Path::new(&source)))?;
+            files.try_for_each(|file| file.spares(&source))?;
         }
         Ok(Self {
             shots,
