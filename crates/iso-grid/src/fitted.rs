@@ -110,7 +110,7 @@ impl Fitted {
             }
             let cube = cube(half_side);
             let mut cells = cube.open_cells(kernel, workspace);
-            let Some(found) = cube.glimpse(&cells) else { continue };
+            let Some(found) = cube.glimpse(&cells, kernel, workspace) else { continue };
             let Some((taken, known)) = &best else {
                 best = Some((number, found));
                 continue;
@@ -182,10 +182,14 @@ impl Region {
     }
 
     /// What may be seen in cells of this cube.
-    fn glimpse(&self, cells: &[IVec3]) -> Option<Glimpse> {
+    fn glimpse(
+        &self,
+        cells: &[IVec3],
+        kernel: &dyn BoxKernel,
+        workspace: &mut Workspace,
+    ) -> Option<Glimpse> {
         let held = self.around(cells)?;
-        let is_met = |&axis: &usize| held.min[axis] == self.min[axis] || held.max[axis] == self.max[axis];
-        let axes_met = (0..3).filter(is_met).count();
+        let axes_met = self.axes_met(cells, kernel, workspace);
         let is_inner = |cell: &IVec3| cell.to_array().iter().all(|along| INNER_HALF.contains(along));
         Some(Glimpse { held, axes_met, is_scrap: axes_met > 0 && !cells.iter().any(is_inner) })
     }

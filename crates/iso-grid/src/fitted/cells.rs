@@ -14,8 +14,17 @@ pub(super) const HALVINGS: u32 = 4;
 /// Cells of a cube along each axis that lie in the cube before it.
 pub(super) const BEFORE: Range<i32> = 6..10;
 
+/// Cells at the faces of a cube are cut in halves this often to find out whether the surface meets the faces,
+const HALVINGS_AT_FACES: u32 = 4;
+
+/// as long as there are no more of them,
+const MOST_AT_FACES: usize = 512;
+
+/// and only if no points of it are found in so many of them, for then it most likely does.
+const ASKED_AT_FACES: usize = 64;
+
 /// Cells that may hold the surface are cut in halves this often to prove that they do,
-const HALVINGS_TO_PROVE: u32 = 3;
+const HALVINGS_TO_PROVE: u32 = 8;
 
 /// as long as there are no more of them; of more, some are looked at.
 const MOST_TO_PROVE: usize = 300;
@@ -38,6 +47,31 @@ impl Region {
         let (min, max) = (self.corner(first, 1 << HALVINGS), self.corner(last + 1, 1 << HALVINGS));
         let spare = 0.5 * (DVec3::splat(THINNEST * (max - min).max_element()) - (max - min)).max(DVec3::ZERO);
         Some(Self { min: (min - spare).max(self.min), max: (max + spare).min(self.max) })
+    }
+
+    /// On how many axes faces of the region may be met by the surface, which is in some of sixteen cells along each axis.
+    pub(super) fn axes_met(
+        &self,
+        cells: &[IVec3],
+        kernel: &dyn BoxKernel,
+        workspace: &mut Workspace,
+    ) -> usize {
+        let mut count = 1 << HALVINGS;
+        let mut cells: Vec<_> = cells.iter().copied().filter(|cell| is_at_face(*cell, count)).collect();
+        let some = &cells[..cells.len().min(ASKED_AT_FACES)];
+        if !self.holds_points(some, count, kernel, workspace) {
+            for _ in 0..HALVINGS_AT_FACES {
+                if cells.len() > MOST_AT_FACES {
+                    break;
+                }
+                count *= 2;
+                let mut parts = halved(&cells);
+                parts.retain(|part| is_at_face(*part, count));
+                cells = self.not_empty(parts, count, kernel, workspace);
+            }
+        }
+        let is_met = |axis: &usize| cells.iter().any(|cell| is_end(cell[*axis], count));
+        (0..3).filter(is_met).count()
     }
 
     /// Whether the surface is found to have points in some of sixteen cells along each axis. If there are few, they are halved to find out.
@@ -130,6 +164,16 @@ pub(super) const OCTANTS: [IVec3; 8] = [
     IVec3::new(0, 1, 1),
     IVec3::new(1, 1, 1),
 ];
+
+/// Whether a cell is the first or the last of `count` along an axis.
+fn is_end(along: i32, count: i32) -> bool {
+    along == 0 || along == count - 1
+}
+
+/// Whether a cell, of which `count` fill a region along each axis, lies at one of its faces.
+fn is_at_face(cell: IVec3, count: i32) -> bool {
+    cell.to_array().into_iter().any(|along| is_end(along, count))
+}
 
 /// The eight cells that each cell is cut into.
 pub(super) fn halved(cells: &[IVec3]) -> Vec<IVec3> {

@@ -50,6 +50,30 @@ fn parts_apart_from_each_other_are_framed_together() {
     assert!(!around(two).goes_on && !around(small).goes_on);
 }
 
+/// Cells at the faces of a cube are open, for intervals are wide there, and the surface does not reach them.
+#[test]
+fn wide_intervals_at_the_faces_of_a_cube_do_not_cut_a_surface_off() {
+    // Half its diameters are √20 and 1/√2.9 along x ± y, so that x and y reach √(20/2 + 1/5.8).
+    let side = (10.0_f64 + 1.0 / 5.8).sqrt();
+    // The chair of the books, whose feet are more than 6 from its middle along each axis.
+    let chair = "(x^2 + y^2 + z^2 - 23.75)^2 = 0.8((z - 5)^2 - 2x^2)((z + 5)^2 - 2y^2)";
+    for (formula, reached) in [("x^2 + y^2 + z^2 - 1.9x*y = 1", side), (chair, 6.0)] {
+        let Fitted { region, goes_on, .. } = around(formula);
+        let [from, to] = [region.min(), region.max()].map(|corner| corner.x.abs());
+        assert!(!goes_on && from >= reached && to >= reached && from + to <= 16.0, "{region:?}");
+    }
+}
+
+/// Both fill a small part of any cell in which they are found first.
+#[test]
+fn small_parts_far_away_are_framed_as_well() {
+    for x in [30.0, 300.0] {
+        let two = format!("min(x^2 + y^2 + z^2, (x - {x})^2 + y^2 + z^2) = 1");
+        let region = fitted(&two);
+        assert!(region.min().x <= -1.0 && region.max().x >= x + 1.0, "{region:?}");
+    }
+}
+
 #[test]
 fn a_surface_that_goes_on_elsewhere_is_said_to() {
     let oval = around("y^2 + z^2 = x*(x - 1)*(x - 5)");
