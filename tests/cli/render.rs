@@ -372,6 +372,11 @@ fn cameras_can_stand_anywhere() {
     render(&case, TORUS, &["-o", "b.ppm", "-q", "--eye", "0.5,-6,0.25", "--target", "0.5,-2,0.25"]).exits(0);
     assert_eq!(case.content("a.ppm"), case.content("b.ppm"));
     render(&case, TORUS, &["--eye", "0,0,-6", "--up", "0,0,1"]).exits(2).mentions("up direction");
+    // One that looks straight down has y upwards in the picture, as a yaw of 0 has.
+    let above = ["-o", "a.ppm", "-q", "--yaw", "0", "--pitch", "90", "--distance", "6"];
+    render(&case, TORUS, &above).exits(0);
+    render(&case, TORUS, &["-o", "b.ppm", "-q", "--eye", "0,0,6"]).exits(0);
+    assert_eq!(case.content("a.ppm"), case.content("b.ppm"));
     render(&case, TORUS, &["--eye", "1,1,1", "--yaw", "-3"]).exits(2).mentions("--yaw");
     render(&case, TORUS, &["--yaw", "-30", "--pitch", "-20", "-q"]).exits(0);
 }

@@ -13,6 +13,14 @@ use crate::values::Setting;
 /// What a picture took. Its fields are the keys of `iso render --json`.
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
+    /// The formula as it was given, or how its file was named.
+    pub(crate) formula: String,
+    /// The level, if one was given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) level: Option<f64>,
+    /// The parameters that were given values.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) settings: Vec<Setting>,
     /// The files that were written.
     pub(crate) files: Vec<String>,
     /// Which picture of a sequence it is.

@@ -182,12 +182,7 @@ impl Region {
     }
 
     /// What may be seen in cells of this cube.
-    fn glimpse(
-        &self,
-        cells: &[IVec3],
-        kernel: &dyn BoxKernel,
-        workspace: &mut Workspace,
-    ) -> Option<Glimpse> {
+    fn glimpse(&self, cells: &[IVec3], kernel: &dyn BoxKernel, workspace: &mut Workspace) -> Option<Glimpse> {
         let held = self.around(cells)?;
         let axes_met = self.axes_met(cells, kernel, workspace);
         let is_inner = |cell: &IVec3| cell.to_array().iter().all(|along| INNER_HALF.contains(along));

@@ -17,7 +17,7 @@ pub struct Region {
 #[non_exhaustive]
 pub enum RegionError {
     /// An end is infinite or NaN, or the extent overflows.
-    #[error("the box must be finite along {axis}, but runs from {from} to {to}")]
+    #[error("the box must be finite along {axis}, but runs from {from:?} to {to:?}")]
     NotFinite {
         /// The axis's name.
         axis: char,
@@ -27,7 +27,7 @@ pub enum RegionError {
         to: f64,
     },
     /// An upper end does not lie above its lower end.
-    #[error("the box must end above where it begins along {axis}, but runs from {from} to {to}")]
+    #[error("the box must end above where it begins along {axis}, but runs from {from:?} to {to:?}")]
     Empty {
         /// The axis's name.
         axis: char,

@@ -108,7 +108,10 @@ fn sections(flags: &ExplainFlags) -> Result<Vec<(Section, Shown)>, Failure> {
     let surface = Surface::new(Arc::new(Interpreter), simplified.0.clone());
     let plan = plan(picture, &formula, &simplified.0)?;
     let (followed, time) = timed(|| plan.followed(&surface).program().clone());
-    let signs = (followed != simplified.0).then(|| Stage::program(&(followed.clone(), time)));
+    let signs = match followed == simplified.0 {
+        true => Stage::new(followed.operations(), "operations", time, "F itself, as simplified".to_owned()),
+        false => Stage::program(&(followed.clone(), time)),
+    };
     let gradient = timed(|| followed.with_gradient().simplified());
     let native = native_stages(flags, &followed)?;
     // A model has no tree: its lines are the program.
@@ -122,15 +125,10 @@ fn sections(flags: &ExplainFlags) -> Result<Vec<(Section, Shown)>, Failure> {
         (Section::Program, Stage::program(&(program, lower_time))),
         (Section::Hints, Stage::hints(&hints)),
         (Section::Simplified, Stage::program(&simplified)),
+        (Section::Signs, signs),
+        (Section::Gradient, Stage::program(&gradient)),
     ];
-    let signs = signs.map(|signs| (Section::Signs, signs));
-    let gradient = (Section::Gradient, Stage::program(&gradient));
-    let stages = stages
-        .into_iter()
-        .chain(signs)
-        .chain([gradient])
-        .chain(native)
-        .map(|(section, stage)| (section, Shown::Stage(stage)));
+    let stages = stages.into_iter().chain(native).map(|(section, stage)| (section, Shown::Stage(stage)));
     Ok([(Section::Plan, Shown::Plan(plan))].into_iter().chain(stages).collect())
 }
 

@@ -41,7 +41,7 @@ pub(crate) struct CameraFlags {
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     pub(crate) target: Option<DVec3>,
 
-    /// Which direction is up in the picture [default: 0,0,1]
+    /// Which direction is up in the picture [default: 0,0,1, or 0,1,0 for a view along z]
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     #[arg(requires = "eye")]
     pub(crate) up: Option<DVec3>,

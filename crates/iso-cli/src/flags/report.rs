@@ -12,13 +12,15 @@ use iso_render::Size;
 use super::{CameraFlags, EngineName, LevelFlag, MethodName, RegionFlag, RootFinderName, ThreadsFlag};
 use crate::values::{self, Setting};
 
+const USAGE: &str = "iso report [OPTIONS] <FORMULA>\n       iso report [OPTIONS] --suite <SUITE>";
+
 /// Measure what error each method and setting buys for what time
 ///
 /// Draws a picture with every engine, method and setting in turns, and holds each pixel against what the certified method
 /// proves of that pixel alone. The folder of the report gets report.csv, report.json, the page report.html, and its plots.
 /// They are written anew while it goes on, so that an interrupted report is kept.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, override_usage = USAGE)]
 pub(crate) struct ReportFlags {
     #[command(flatten)]
     pub(crate) subject: SubjectFlags,

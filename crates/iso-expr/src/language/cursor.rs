@@ -49,6 +49,21 @@ impl<'t> Cursor<'t> {
         begins && after.is_some_and(|item| item.kind == Kind::equal)
     }
 
+    /// Whether a parenthesis that is open here is closed later in the statement.
+    pub(super) fn is_closed_later(&self) -> bool {
+        let mut depth = 0_usize;
+        for item in &self.items[self.next..] {
+            match item.kind {
+                Kind::open => depth += 1,
+                Kind::close if depth == 0 => return true,
+                Kind::close => depth -= 1,
+                Kind::semicolon => return false,
+                _ => {}
+            }
+        }
+        false
+    }
+
     /// The last item before [`Cursor::peek`] that is not the end of a line.
     pub(super) fn previous_on_lines(&self) -> Option<Item<'t>> {
         self.items[..self.next].iter().rev().find(|item| item.kind != Kind::newline).copied()

@@ -386,6 +386,11 @@ impl<'t> Reader<'_, 't> {
     fn missing_operator(&self, item: &Item<'t>) -> FormulaError {
         match (item.kind, self.brackets.last()) {
             (Kind::stray, _) => fault::stray(item),
+            (Kind::equal, Some(Bracket { kind: BracketKind::Parenthesis, open }))
+                if !self.cursor.is_closed_later() =>
+            {
+                fault::unclosed(open)
+            }
             (Kind::equal, innermost) => fault::equation_inside(item, innermost.is_some()),
             (kind, Some(bracket)) if ends_statement(kind) => fault::unclosed(&bracket.open),
             (kind, None) if ends_statement(kind) => fault::misplaced_definition(item),

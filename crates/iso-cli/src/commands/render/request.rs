@@ -13,7 +13,7 @@ use crate::camera::camera;
 use crate::clock::{Phases, add_to};
 use crate::engine::{engine, threads};
 use crate::failure::Failure;
-use crate::flags::RenderFlags;
+use crate::flags::{FormulaFlags, RenderFlags};
 use crate::formula::file_of;
 use crate::interruption::Interruption;
 use crate::method::fitted;
@@ -26,6 +26,8 @@ use crate::summary::Summary;
 
 /// All that flags and files say, checked.
 pub(super) struct Request {
+    formula: FormulaFlags,
+    level: Option<f64>,
     shots: Vec<Shot>,
     region: Option<Region>,
     smoothing: Smoothing,
@@ -89,6 +91,8 @@ impl Request {
             engine,
             threads: threads(&picture.threads)?,
             interruption,
+            level: picture.level.level,
+            formula: flags.picture.formula,
         })
     }
 
@@ -214,6 +218,9 @@ impl Request {
             shows_status: self.look.shows_statuses,
         };
         Ok(Some(Summary {
+            formula: self.formula.formula.to_string_lossy().into_owned(),
+            level: self.level,
+            settings: self.formula.settings.clone(),
             files: files.names(),
             frame,
             width: picture.size.width(),
