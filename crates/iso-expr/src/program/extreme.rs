@@ -13,30 +13,54 @@ pub enum Extreme {
 }
 
 impl Program {
-    /// The programs of which this one's only output is the least or the greatest value everywhere, if it is a minimum or a maximum:
-    /// two or more.
+    /// The programs of which this one's only output is the least or the greatest value everywhere, if it is a minimum or a maximum, or the
+    /// negative of one: two or more. The negative of a minimum is the maximum of the negatives.
     pub fn extreme_of(&self) -> Option<(Extreme, Vec<Self>)> {
         let [output] = self.outputs[..] else { return None };
-        let (extreme, wanted) = match self.node(output) {
-            Node::Apply(Operation::Minimum, _) => (Extreme::Least, Operation::Minimum),
-            Node::Apply(Operation::Maximum, _) => (Extreme::Greatest, Operation::Maximum),
-            _ => return None,
-        };
-        let (mut open, mut operands) = (vec![output], Vec::<NodeId>::new());
-        while let Some(id) = open.pop() {
-            match self.node(id) {
-                Node::Apply(operation, [a, b, _]) if operation == wanted => open.extend([b, a]),
-                _ if operands.contains(&id) => {}
-                _ => operands.push(id),
+        let whole = self.without_negations(Signed { id: output, is_negative: false });
+        let (extreme, _) = self.as_extreme(whole)?;
+        let (mut open, mut operands) = (vec![whole], Vec::new());
+        while let Some(signed) = open.pop() {
+            match self.as_extreme(signed) {
+                Some((found, [a, b])) if found == extreme => open.extend([b, a]),
+                _ if operands.contains(&signed) => {}
+                _ => operands.push(signed),
             }
         }
-        let alone = |operand| {
+        let alone = |Signed { id, is_negative }| {
             let mut program = self.clone();
-            program.outputs = vec![operand];
+            let output = if is_negative { program.apply(Operation::Negate, &[id]) } else { id };
+            program.outputs = vec![output];
             program.pruned()
         };
         (operands.len() > 1).then(|| (extreme, operands.into_iter().map(alone).collect()))
     }
+
+    /// What a value is the least or the greatest of, if it is.
+    fn as_extreme(&self, Signed { id, is_negative }: Signed) -> Option<(Extreme, [Signed; 2])> {
+        let (is_least, a, b) = match self.node(id) {
+            Node::Apply(Operation::Minimum, [a, b, _]) => (true, a, b),
+            Node::Apply(Operation::Maximum, [a, b, _]) => (false, a, b),
+            _ => return None,
+        };
+        let extreme = if is_least != is_negative { Extreme::Least } else { Extreme::Greatest };
+        Some((extreme, [a, b].map(|id| self.without_negations(Signed { id, is_negative }))))
+    }
+
+    /// The same value as the positive or the negative of one that is no negative itself.
+    fn without_negations(&self, Signed { mut id, mut is_negative }: Signed) -> Signed {
+        while let Node::Apply(Operation::Negate, [operand, ..]) = self.node(id) {
+            (id, is_negative) = (operand, !is_negative);
+        }
+        Signed { id, is_negative }
+    }
+}
+
+/// A value, or its negative.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Signed {
+    id: NodeId,
+    is_negative: bool,
 }
 
 #[cfg(test)]
@@ -58,6 +82,21 @@ mod tests {
                 assert!(operands.contains(&read(text)), "{text} is not one of {operands:?}");
             }
         }
+    }
+
+    #[test]
+    fn the_negative_of_a_minimum_is_a_maximum_of_negatives() {
+        let (extreme, operands) = read("-min(x, -max(y, -(z + 3)))").extreme_of().unwrap();
+        assert_eq!((extreme, operands.len()), (Extreme::Greatest, 3));
+        for text in ["-x", "y", "-(z + 3)"] {
+            assert!(operands.contains(&read(text)), "{text} is not one of {operands:?}");
+        }
+        // Beside each other, both signs are two values, and twice the same one is one.
+        let (extreme, operands) = read("max(x, -(-y), y, -x)").extreme_of().unwrap();
+        assert_eq!((extreme, operands.len()), (Extreme::Greatest, 3));
+        let (extreme, operands) = read("-max(x, min(y, z))").extreme_of().unwrap();
+        assert_eq!((extreme, operands.len()), (Extreme::Least, 2));
+        assert!(operands.contains(&read("-min(y, z)")));
     }
 
     #[test]
