@@ -39,8 +39,6 @@ pub(super) struct Bow {
     twice_least: f64,
     /// The slopes along rays, where they are all of one sign.
     slopes: Option<Interval>,
-    /// Whether only roots are wanted where the function falls, whose sign `sign` may have changed.
-    falls: bool,
     /// How far a value of F may be off.
     error: f64,
     /// How wide the enclosure of a root may be.
@@ -69,25 +67,14 @@ impl Bow {
             most: curvature.magnitude(),
             twice_least: (2.0 - 16.0 * ROUNDING) * curvature.lo.max(0.0),
             slopes: slopes.map(signed),
-            falls: false,
             error,
             tolerance,
         })
     }
 
-    /// The same where only roots are wanted at which F falls; `None` if F may bend downwards without being monotone.
-    pub(super) fn falling(self) -> Option<Self> {
-        (self.sign > 0.0 || self.slopes.is_some()).then_some(Self { falls: true, ..self })
-    }
-
-    /// How far a value of F may be off.
-    pub(super) fn error(&self) -> f64 {
-        self.error
-    }
-
-    /// Whether F rises along every ray.
-    pub(super) fn rises(&self) -> bool {
-        self.slopes.is_some_and(|slopes| self.sign * slopes.lo > 0.0)
+    /// Whether F is monotone along every ray.
+    pub(super) fn is_monotone(&self) -> bool {
+        self.slopes.is_some()
     }
 }
 
@@ -138,25 +125,26 @@ impl Pixel {
     pub(super) fn judge(&mut self, mut course: Course, bow: &Bow) -> Verdict {
         course.slope_error += ROUNDING * (course.slope.abs() + course.slope_error);
         if course.stays_above(bow) {
-            return self.free(1.0, bow);
+            return Verdict::Free(bow.sign);
         }
         if let Some(slopes) = bow.slopes {
             course.narrow(slopes);
         }
         let t = self.t;
+        // What bends upwards is negative between two places where it is.
+        if self.known.starts_below && t >= self.wanted.end && course.value + course.value_error < 0.0 {
+            return Verdict::Free(-bow.sign);
+        }
         let [from, to] = ways(self.wanted, t);
         let discriminant = course.discriminant(bow);
         let has_root = discriminant > 0.0 || bow.slopes.is_some();
         let mut way = course.way(discriminant, self.side(bow), bow);
         if !(has_root && from <= way && way <= to) {
             if let Some(sign) = course.sign_between([from, to], bow) {
-                return self.free(sign, bow);
+                return Verdict::Free(sign * bow.sign);
             }
             if bow.slopes.is_none() && discriminant > 0.0 && way < from && !self.known.starts_below {
                 if course.is_negative_at(from, bow) {
-                    if bow.falls {
-                        return Verdict::Below;
-                    }
                     self.known.starts_below = true;
                     way = course.way(discriminant, 1.0, bow);
                 } else {
@@ -175,9 +163,23 @@ impl Pixel {
         Verdict::Open
     }
 
-    /// What it means that there is no root, since F, or −F, is of one sign.
-    fn free(&self, sign: f64, bow: &Bow) -> Verdict {
-        if bow.falls && sign * bow.sign < 0.0 { Verdict::Below } else { Verdict::Free }
+    /// The same, to be looked at first so far from where the part's expansion is centred, if that is known.
+    pub(super) fn at_way(mut self, way: f64) -> Self {
+        if way.is_finite() {
+            self.t = (self.t + way).max(self.reach.start).min(self.reach.end);
+        }
+        self
+    }
+
+    /// The same where the root is wanted at which a function that bends rises again.
+    pub(super) fn rising(mut self) -> Self {
+        self.known.starts_below = true;
+        self
+    }
+
+    /// The sign of F before the root that is wanted.
+    pub(super) fn sign_before(&self, bow: &Bow) -> f64 {
+        -self.side(bow) * bow.sign
     }
 
     /// The sign of the slope at the root that is wanted.
@@ -210,7 +212,7 @@ impl Pixel {
         }
         let root = Span { start: t - offset - radius, end: t - offset + radius };
         if self.wanted.end < root.start {
-            return Some(self.free(-side, bow));
+            return Some(Verdict::Free(-side * bow.sign));
         }
         if root.start < self.reach.start || self.reach.end < root.end || root.end < self.wanted.start {
             return Some(Verdict::Lost);
@@ -303,6 +305,12 @@ impl Course {
         if has_root { self.way(discriminant, side, bow) } else { f64::INFINITY }
     }
 
+    /// About how far the second root of the parabola is where it bends; infinite if it has none.
+    pub(super) fn way_to_second_root(&self, bow: &Bow) -> f64 {
+        let discriminant = self.discriminant(bow);
+        if discriminant > 0.0 { self.way(discriminant, 1.0, bow) } else { f64::INFINITY }
+    }
+
     /// What rounding comes to in what is said of F so far away.
     fn slack(&self, way: f64, bow: &Bow) -> f64 {
         ROUNDING * (self.value.abs() + way * (self.slope.abs() + self.slope_error + way * bow.most))
@@ -338,8 +346,8 @@ fn least(value: f64, slopes: [f64; 2], curvature: f64, [from, to]: [f64; 2]) -> 
 mod tests {
     use super::*;
 
-    /// A function that bends as x² does, or its negative, where only roots at which it falls are wanted, or all.
-    fn bow(sign: f64, falls: bool) -> Bow {
+    /// A function that bends as x² does, or its negative.
+    fn bow(sign: f64) -> Bow {
         Bow {
             t: 1.0,
             slope_error: 1e-3,
@@ -350,7 +358,6 @@ mod tests {
             most: 2.1,
             twice_least: 3.79,
             slopes: None,
-            falls,
             error: 1e-15,
             tolerance: 1e-12,
         }
@@ -365,14 +372,12 @@ mod tests {
     }
 
     #[test]
-    fn what_is_negative_everywhere_does_not_fall_to_zero() {
-        for falls in [false, true] {
-            assert!(matches!(judged(1.0, &bow(1.0, falls)), Verdict::Free));
+    fn the_sign_is_known_where_there_is_no_root() {
+        for sign in [1.0, -1.0] {
+            for value in [1.0, -1.0] {
+                let Verdict::Free(found) = judged(value, &bow(sign)) else { panic!("{value}, {sign}") };
+                assert_eq!(found, value * sign);
+            }
         }
-        assert!(matches!(judged(-1.0, &bow(1.0, false)), Verdict::Free));
-        assert!(matches!(judged(-1.0, &bow(1.0, true)), Verdict::Below));
-        // The negative of these.
-        assert!(matches!(judged(1.0, &bow(-1.0, true)), Verdict::Below));
-        assert!(matches!(judged(-1.0, &bow(-1.0, true)), Verdict::Free));
     }
 }

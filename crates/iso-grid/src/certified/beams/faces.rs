@@ -1,7 +1,4 @@
-//! Edges of bodies: parts on which F is the least or the greatest of several functions, each smooth by itself.
-//!
-//! A body may be put together by minima and maxima in any order. On a part most of its functions are of one sign, and what is left
-//! of the others is often a minimum or a maximum alone.
+//! The functions of which a body is made by minima and maxima, in any order, each smooth by itself. On a part most of them are of one sign.
 
 use iso_expr::{Decoration, Extreme};
 
@@ -10,21 +7,18 @@ use super::bows::{Bow, ways};
 use super::form::{Form, Gradient};
 use super::pixels::Pixel;
 use super::subdivision::{Part, Subdivision};
-use crate::area::Area;
 use crate::{Kernel, Ray, Span};
 
 /// More functions are left to smaller parts, where fewer of them matter.
 pub(super) const MOST: usize = 4;
 
-/// One of the functions of which F is the least or the greatest, where it may have roots.
+/// One of the functions of which F is made, where it may have roots.
 pub(super) struct Face {
     /// The number of its kernels.
     pub(super) kernels: u32,
     /// To second order, or its negative: as `bow` has it.
     pub(super) bend: Bend,
     pub(super) bow: Bow,
-    /// What no slope along a ray exceeds.
-    pub(super) steepest: f64,
 }
 
 impl Face {
@@ -34,28 +28,64 @@ impl Face {
         course.sign_between(ways(stretch, self.bend.t), &self.bow).map(|sign| sign * self.bow.sign)
     }
 
-    /// A ray on which the function is `course`, and which is to meet it in what is wanted, about so far from the middle of the part.
+    /// A ray, so many columns and rows off the middle, that is to meet the face in what is wanted.
     #[inline]
-    pub(super) fn met_by(
+    pub(super) fn met_by(&self, ray: (usize, Ray), (a, b): (f64, f64), [wanted, reach]: [Span; 2]) -> Pixel {
+        let course = self.bend.at(a, b);
+        let way = course.way_to_root(&self.bow);
+        Pixel::starting(ray, [wanted, reach], &course, &self.bow).at_way(way)
+    }
+
+    /// The same ray behind the root where a face that bends falls, or its negative: to meet it where that rises again.
+    #[inline]
+    pub(super) fn met_again_by(
         &self,
         ray: (usize, Ray),
+        (a, b): (f64, f64),
         [wanted, reach]: [Span; 2],
-        (course, way): (&Course, f64),
     ) -> Pixel {
-        let mut pixel = Pixel::starting(ray, [wanted, reach], course, &self.bow);
-        if way.is_finite() {
-            pixel.t = (pixel.t + way).max(reach.start).min(reach.end);
-        }
-        pixel
+        let course = self.bend.at(a, b);
+        let way = course.way_to_second_root(&self.bow);
+        Pixel::starting(ray, [wanted, reach], &course, &self.bow).rising().at_way(way)
     }
 }
 
 /// What F, or a function of which it is made, comes to on a part.
-enum Made {
+pub(super) enum Made {
     /// It is of this sign everywhere.
     Signed(f64),
+    /// It is the face of this number.
+    Face(usize),
     /// It is zero where the least or the greatest of these is, and of the same sign elsewhere.
-    Of(Extreme, Vec<Face>),
+    Of(Extreme, Vec<Self>),
+}
+
+impl Made {
+    /// Whether F is the least or the greatest of a face and what else there may be.
+    pub(super) fn has_directly(&self, face: usize) -> Option<Extreme> {
+        match self {
+            Self::Of(extreme, parts) => {
+                let is_face = |part: &Self| matches!(part, Self::Face(number) if *number == face);
+                parts.iter().any(is_face).then_some(*extreme)
+            }
+            _ => None,
+        }
+    }
+
+    /// The sign where faces have these, 0 where that is not known.
+    pub(super) fn sign(&self, of_faces: &[f64; MOST]) -> f64 {
+        match self {
+            Self::Signed(sign) => *sign,
+            Self::Face(number) => of_faces[*number],
+            Self::Of(extreme, parts) => {
+                let signs = parts.iter().map(|part| part.sign(of_faces));
+                match extreme {
+                    Extreme::Least => signs.fold(1.0, f64::min),
+                    Extreme::Greatest => signs.fold(-1.0, f64::max),
+                }
+            }
+        }
+    }
 }
 
 /// The sign that F has where any of its functions has it.
@@ -67,16 +97,20 @@ fn deciding(extreme: Extreme) -> f64 {
 }
 
 impl Subdivision<'_> {
-    /// Follows each ray of a part on which F is the least or the greatest of a few functions that each bend upwards or are monotone;
-    /// says whether it did.
+    /// Follows each ray of a part on which F is made of a few functions that each bend upwards or are monotone, by minima and maxima; says
+    /// whether it did.
     pub(super) fn follow_edge(&mut self, part: &Part) -> bool {
         if !self.is_fit(part) {
             return false;
         }
-        match self.made_of_several(part, part.kernels) {
+        let mut faces = Vec::new();
+        match self.made_of_several(part, part.kernels, &mut faces) {
             Some(Made::Signed(_)) => true,
-            Some(Made::Of(Extreme::Least, faces)) => self.follow_seam(part, &faces),
-            Some(Made::Of(Extreme::Greatest, faces)) => self.follow_crease(part, &faces),
+            Some(Made::Face(number)) => {
+                let Face { kernels, bend, bow } = &faces[number];
+                self.follow_smooth(part, bend, (*kernels, bow))
+            }
+            Some(made) => self.follow_made(part, &faces, &made),
             None => false,
         }
     }
@@ -96,33 +130,31 @@ impl Subdivision<'_> {
         found
     }
 
-    /// What a minimum or a maximum comes to on a part; `None` if it is neither, or faces of it are not smooth or too many, or both
-    /// minima and maxima are left.
-    fn made_of_several(&mut self, part: &Part, kernels: u32) -> Option<Made> {
+    /// What a minimum or a maximum comes to on a part, and the faces of which it is made; `None` if it is neither, or some are not smooth or
+    /// they are too many.
+    fn made_of_several(&mut self, part: &Part, kernels: u32, faces: &mut Vec<Face>) -> Option<Made> {
         let (extreme, numbers) = self.faces_of(kernels)?;
-        let (mut faces, mut other) = (Vec::new(), None);
+        let before = faces.len();
+        let mut parts = Vec::new();
         for number in numbers {
-            match self.made(part, number) {
-                Some(Made::Signed(sign)) if sign == deciding(extreme) => return Some(Made::Signed(sign)),
-                Some(Made::Signed(_)) => {}
-                Some(Made::Of(of, found)) if of == extreme || found.len() == 1 => faces.extend(found),
-                Some(mixed) if other.is_none() => other = Some(mixed),
-                _ => return None,
-            }
-            if faces.len() > MOST {
-                return None;
+            match self.made(part, number, faces)? {
+                Made::Signed(sign) if sign == deciding(extreme) => {
+                    faces.truncate(before);
+                    return Some(Made::Signed(sign));
+                }
+                Made::Signed(_) => {}
+                made => parts.push(made),
             }
         }
-        match other {
-            Some(_) if !faces.is_empty() => None,
-            None if faces.is_empty() => Some(Made::Signed(-deciding(extreme))),
-            Some(other) => Some(other),
-            None => Some(Made::Of(extreme, faces)),
-        }
+        Some(match parts.len() {
+            0 => Made::Signed(-deciding(extreme)),
+            1 => parts.swap_remove(0),
+            _ => Made::Of(extreme, parts),
+        })
     }
 
     /// What a function of which F is made comes to on a part: a face if it is smooth.
-    fn made(&mut self, part: &Part, kernels: u32) -> Option<Made> {
+    fn made(&mut self, part: &Part, kernels: u32, faces: &mut Vec<Face>) -> Option<Made> {
         let (t, center) = self.center(part);
         let bounds = self.beam(part.beam).bounds_in_space(part.form.reach);
         let both = [(center, center), bounds];
@@ -139,42 +171,15 @@ impl Subdivision<'_> {
             }
             if let Some(bend) = self.expand(part, (t, center), jet, kernels) {
                 let error = self.error_of_values(part, kernels)?;
-                let bow = Bow::new(&bend, form.slope, error, self.tolerance(part))?.falling()?;
+                let bow = Bow::new(&bend, form.slope, error, self.tolerance(part))?;
                 let bend = if bow.sign < 0.0 { bend.negated() } else { bend };
-                let face = Face { kernels, bend, bow, steepest: form.slope.magnitude() };
-                return Some(Made::Of(Extreme::Least, vec![face]));
+                if faces.len() == MOST {
+                    return None;
+                }
+                faces.push(Face { kernels, bend, bow });
+                return Some(Made::Face(faces.len() - 1));
             }
         }
-        self.made_of_several(part, kernels)
+        self.made_of_several(part, kernels, faces)
     }
-
-    /// A ray that is to meet a face in a stretch.
-    pub(super) fn on_face(&self, part: &Part, face: &Face, place: usize, wanted: Span) -> Pixel {
-        let (column, row) = self.position(place);
-        let (a, b) = self.beam(part.beam).area.offset(column, row);
-        let course = face.bend.at(a, b);
-        let way = course.way_to_root(&face.bow);
-        face.met_by((place, self.tile.ray(column, row)), [wanted, part.form.reach], (&course, way))
-    }
-}
-
-/// Which faces of a part may have either sign on rays of a block of an area; `None` when none of these rays has a root there.
-pub(super) fn undecided(
-    area: Area,
-    block: Area,
-    part: &Part,
-    (extreme, faces): (Extreme, &[Face]),
-) -> Option<[bool; MOST]> {
-    let [across, along] = block.radii();
-    let (column, row) = area.offset(block.column, block.row);
-    let mut are_undecided = [false; MOST];
-    for (face, is_undecided) in faces.iter().zip(&mut are_undecided) {
-        let course = face.bend.around((column + across, row + along), block.radii());
-        match face.sign(&course, part.stretch) {
-            Some(sign) if sign == deciding(extreme) => return None,
-            Some(_) => {}
-            None => *is_undecided = true,
-        }
-    }
-    are_undecided.contains(&true).then_some(are_undecided)
 }

@@ -70,10 +70,21 @@ impl Subdivision<'_> {
         self.memory.attempts.note(size, found.is_some());
         let Some((bend, bow)) = found else { return false };
         let bend = if bow.sign < 0.0 { bend.negated() } else { bend };
+        self.follow_smooth(part, &bend, (part.kernels, &bow))
+    }
+
+    /// Follows each ray of a part on which F has the sign of a function that bends one way or is monotone, computed by kernels of a number;
+    /// says whether it did.
+    pub(super) fn follow_smooth(&mut self, part: &Part, bend: &Bend, (kernels, bow): (u32, &Bow)) -> bool {
         let mut pixels = std::mem::take(&mut self.memory.bowed);
-        let count = self.start_bent(part, &bend, &bow, &mut pixels);
+        let count = self.start_bent(part, bend, bow, &mut pixels);
         if let Some(count) = count {
-            self.pursue_and_settle(&mut pixels[..count], part.kernels, &bow);
+            let mut ended = std::mem::take(&mut self.memory.ended);
+            self.pursue(&mut pixels[..count], kernels, bow, &mut ended);
+            for ended in ended.drain(..) {
+                self.settle(ended, part.kernels);
+            }
+            self.memory.ended = ended;
         }
         self.memory.bowed = pixels;
         count.is_some()
@@ -177,7 +188,7 @@ impl Subdivision<'_> {
                         bow,
                     );
                     match pixel.judge(course, bow) {
-                        Verdict::Free | Verdict::Below => continue,
+                        Verdict::Free(_) => continue,
                         Verdict::Open => {
                             doubtful += usize::from(course.is_doubtful(pixel.t - bend.t, stretch, bow));
                             if doubtful > DOUBTFUL {

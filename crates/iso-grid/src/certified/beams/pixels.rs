@@ -11,7 +11,7 @@ pub(super) const STEPS: usize = 10;
 /// A ray that may have a root in a part, and what is known of F along it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Pixel {
-    /// Which ray of the tile.
+    /// Which ray of the tile it is, or of some that are pursued together.
     pub(super) place: usize,
     pub(super) ray: Ray,
     /// Where the part's certificate holds inside the region.
@@ -25,22 +25,20 @@ pub(crate) struct Pixel {
 
 /// What a value told of a pixel.
 pub(super) enum Verdict {
-    /// There is no root where one is looked for.
-    Free,
+    /// There is no root where one is looked for: F has this sign there.
+    Free(f64),
     /// There is one: `wanted` encloses it, and t is about where it is.
     Hit,
     /// Another place is nearer to the root.
     Open,
-    /// There is no root where one is looked for at which F falls: F is negative at the start already.
-    Below,
     /// Single values do not tell.
     Lost,
 }
 
-/// How the pursuit of a ray ended, if not without a root.
+/// How the pursuit of a ray ended.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ended {
-    /// Which ray of the tile.
+    /// The place of its pixel.
     pub(super) place: usize,
     pub(super) end: End,
 }
@@ -48,13 +46,16 @@ pub(crate) struct Ended {
 /// An end of a pursuit.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum End {
-    Hit(Hit),
+    /// There is no root, and F has this sign.
+    Free(f64),
+    /// There is one, and F has this sign before it.
+    Hit(Hit, f64),
     /// The stretch is to be searched otherwise.
     Lost(Span),
 }
 
 impl Subdivision<'_> {
-    /// Ends or goes on with each ray by its root in the part, and notes how it ended if it may have one.
+    /// Goes on with each ray to its root in the part, and notes how it ended.
     pub(super) fn pursue(
         &mut self,
         mut pixels: &mut [Pixel],
@@ -71,20 +72,11 @@ impl Subdivision<'_> {
         }
     }
 
-    /// Pursues each ray where the part's F is that of these kernels, and ends those that have a root.
-    pub(super) fn pursue_and_settle(&mut self, pixels: &mut [Pixel], kernels: u32, bow: &Bow) {
-        let mut ended = std::mem::take(&mut self.memory.ended);
-        self.pursue(pixels, kernels, bow, &mut ended);
-        for ended in ended.drain(..) {
-            self.settle(ended, kernels);
-        }
-        self.memory.ended = ended;
-    }
-
     /// Ends a ray, or searches it where the kernels of this number hold.
     pub(super) fn settle(&mut self, Ended { place, end }: Ended, kernels: u32) {
         match end {
-            End::Hit(hit) => self.end(place, Outcome::Hit(hit)),
+            End::Free(_) => {}
+            End::Hit(hit, _) => self.end(place, Outcome::Hit(hit)),
             End::Lost(wanted) => {
                 self.search_one(self.position(place), wanted, kernels);
             }
@@ -117,12 +109,11 @@ impl Subdivision<'_> {
                     }
                     kept += 1;
                 }
-                Verdict::Open | Verdict::Lost | Verdict::Below => {
-                    ended.push(Ended { place, end: End::Lost(pixel.wanted) });
-                }
-                Verdict::Free => {}
+                Verdict::Open | Verdict::Lost => ended.push(Ended { place, end: End::Lost(pixel.wanted) }),
+                Verdict::Free(sign) => ended.push(Ended { place, end: End::Free(sign) }),
                 Verdict::Hit => {
-                    ended.push(Ended { place, end: End::Hit(Hit { t: pixel.t, bracket: pixel.wanted }) });
+                    let hit = Hit { t: pixel.t, bracket: pixel.wanted };
+                    ended.push(Ended { place, end: End::Hit(hit, pixel.sign_before(bow)) });
                 }
             }
         }
