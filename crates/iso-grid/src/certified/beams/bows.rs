@@ -72,6 +72,11 @@ impl Bow {
         })
     }
 
+    /// Whether F may have another root behind one before which it has this sign.
+    pub(super) fn turns_after(&self, sign: f64) -> bool {
+        !self.is_monotone() && sign * self.sign > 0.0
+    }
+
     /// Whether F is monotone along every ray.
     pub(super) fn is_monotone(&self) -> bool {
         self.slopes.is_some()

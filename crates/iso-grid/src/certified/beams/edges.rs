@@ -7,38 +7,34 @@ use iso_expr::Extreme;
 
 use super::faces::{Face, MOST, Made};
 use super::grazing::{BLOCK, DOUBTFUL};
-use super::pixels::{End, Ended, Pixel, halves_from};
+use super::pixels::{End, Ended, halves_from};
 use super::subdivision::{Part, Subdivision};
 use crate::area::Area;
 use crate::{Hit, Span};
 
-/// A ray of a part, and what is known of each face along it.
+/// A ray of a part on which F may be zero, and what is known of each face along it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Meeting {
     /// Which ray of the tile.
     place: usize,
-    /// F is not zero before, and its first root lies before the end if it is known to have one.
+    /// Before it F is not zero, and behind it nothing is asked for, since F has been zero there.
     asked: Span,
     /// The number of the face that is asked for first.
     likely: usize,
-    known: [Known; MOST],
+    /// The sign of each face at first, 0 before it is asked for.
+    signs: [f64; MOST],
+    /// Whether each face could be told that was asked for.
+    is_clear: bool,
 }
 
-/// What is known of a face along a ray.
+/// Where a face changes its sign along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Known {
-    /// Nothing yet.
-    Unasked,
-    /// It has this sign at first, and changes it at these roots.
-    Course { sign: f64, roots: [Option<Hit>; 2] },
-    /// Not enough.
-    Unclear,
-}
-
-impl Known {
-    fn signed(sign: f64) -> Self {
-        Self::Course { sign, roots: [None; 2] }
-    }
+pub(crate) struct Root {
+    /// The place of the ray among the meetings.
+    meeting: usize,
+    /// The number of the face.
+    face: usize,
+    hit: Hit,
 }
 
 /// What roots of faces mean that cannot be told apart.
@@ -64,84 +60,51 @@ struct Signs<'a> {
 }
 
 impl Meeting {
-    /// Learns how the pursuit of a face ended, which is part of F as `of` says. Where F is no greater than the face, or no less, its first root
-    /// cannot be behind one at which the face falls, or before it.
-    fn learn(&mut self, number: usize, end: End, (of, tolerance): (Option<Extreme>, f64)) {
-        self.known[number] = match (self.known[number], end) {
-            (Known::Unasked, End::Free(sign)) => Known::signed(sign),
-            (Known::Unasked, End::Hit(hit, sign)) => Known::Course { sign, roots: [Some(hit), None] },
-            (Known::Course { sign, roots: [first, None] }, End::Hit(second, _)) => {
-                Known::Course { sign, roots: [first, Some(second)] }
+    /// Asks no more for what cannot be the first root of F, where F is no greater than a face or no less, which has this root.
+    fn narrow(&mut self, of: Option<Extreme>, (root, sign, tolerance): (Span, f64, f64)) {
+        match of {
+            Some(Extreme::Least) if sign > 0.0 => self.asked.end = self.asked.end.min(root.end + tolerance),
+            Some(Extreme::Greatest) if sign > 0.0 => {
+                self.asked.start = self.asked.start.max(root.start - tolerance);
             }
-            (known @ Known::Course { .. }, End::Free(_)) => known,
-            _ => Known::Unclear,
-        };
-        if let Known::Course { sign: 1.0, roots: [Some(Hit { bracket, .. }), _] } = self.known[number] {
-            match of {
-                Some(Extreme::Least) => self.asked.end = self.asked.end.min(bracket.end + tolerance),
-                Some(Extreme::Greatest) => self.asked.start = self.asked.start.max(bracket.start - tolerance),
-                None => {}
-            }
-        }
-    }
-
-    /// The sign of each face at first, if it is known.
-    fn signs(&self, faces: &[Face]) -> Option<[f64; MOST]> {
-        let mut signs = [0.0; MOST];
-        for (known, number) in self.known.iter().zip(0..faces.len()) {
-            let Known::Course { sign, .. } = known else { return None };
-            signs[number] = *sign;
-        }
-        Some(signs)
-    }
-
-    /// Puts the roots of faces in order, each with the number of its face.
-    fn put_roots(&self, found: &mut Vec<(usize, Hit)>) {
-        found.clear();
-        for (number, known) in self.known.iter().enumerate() {
-            if let Known::Course { roots, .. } = known {
-                found.extend(roots.iter().flatten().map(|root| (number, *root)));
-            }
-        }
-        if found.len() > 1 {
-            found.sort_by(|(_, a), (_, b)| a.bracket.start.total_cmp(&b.bracket.start));
+            _ => {}
         }
     }
 }
 
 impl Signs<'_> {
     /// Goes on behind roots of faces whose brackets overlap.
-    fn pass(&mut self, roots: &[(usize, Hit)]) -> Event {
+    fn pass(&mut self, roots: &[Root]) -> Event {
         let (before, known) = (self.made.sign(&self.signs), self.signs);
-        let rises = |(number, _): &(usize, Hit)| known[*number] < 0.0;
-        roots.iter().for_each(|(number, _)| self.signs[*number] = -known[*number]);
+        roots.iter().for_each(|root| self.signs[root.face] = -known[root.face]);
         let is_other = self.made.sign(&self.signs) != before;
-        if let [(_, hit)] = roots {
-            return if is_other { Event::Meeting(*hit) } else { Event::Nothing };
+        if let [root] = roots {
+            return if is_other { Event::Meeting(root.hit) } else { Event::Nothing };
         }
         // What F comes to whatever signs these faces have, and if one alone has its own.
         let mut others = known;
-        roots.iter().for_each(|(number, _)| others[*number] = 0.0);
+        roots.iter().for_each(|root| others[root.face] = 0.0);
         if self.made.sign(&others) != 0.0 {
             return Event::Nothing;
         }
-        let decides = |(number, _): &&(usize, Hit)| {
-            let signs = [known[*number], -known[*number]].map(|sign| {
+        let decides = |root: &&Root| {
+            let signs = [known[root.face], -known[root.face]].map(|sign| {
                 let mut signs = others;
-                signs[*number] = sign;
+                signs[root.face] = sign;
                 self.made.sign(&signs)
             });
             signs == [before, -before]
         };
-        if let Some((_, hit)) = roots.iter().find(decides) {
-            return Event::Meeting(*hit);
+        if let Some(root) = roots.iter().find(decides) {
+            return Event::Meeting(root.hit);
         }
-        let is_monotone = |(number, _): &(usize, Hit)| self.faces[*number].bow.is_monotone();
+        let rises = |root: &Root| known[root.face] < 0.0;
+        let is_monotone = |root: &Root| self.faces[root.face].bow.is_monotone();
         let is_simple = roots.iter().all(|root| is_monotone(root) && rises(root) == rises(&roots[0]));
         let bracket = hull(roots);
         match (is_other, is_simple) {
             (true, true) if bracket.end - bracket.start <= self.tolerance => {
-                Event::Meeting(Hit { bracket, ..roots[0].1 })
+                Event::Meeting(Hit { bracket, ..roots[0].hit })
             }
             (true, _) => Event::Unclear,
             // What is made of functions that all rise or all fall does so too, and has the same sign at both ends.
@@ -152,15 +115,15 @@ impl Signs<'_> {
 }
 
 /// What holds all brackets.
-fn hull(roots: &[(usize, Hit)]) -> Span {
-    let start = roots.iter().map(|(_, hit)| hit.bracket.start).fold(f64::INFINITY, f64::min);
-    let end = roots.iter().map(|(_, hit)| hit.bracket.end).fold(f64::NEG_INFINITY, f64::max);
+fn hull(roots: &[Root]) -> Span {
+    let start = roots.iter().map(|root| root.hit.bracket.start).fold(f64::INFINITY, f64::min);
+    let end = roots.iter().map(|root| root.hit.bracket.end).fold(f64::NEG_INFINITY, f64::max);
     Span { start, end }
 }
 
 /// How many of the first roots cannot be told apart.
-fn count_together(roots: &[(usize, Hit)]) -> usize {
-    let is_apart = |count: &usize| hull(&roots[..*count]).end < roots[*count].1.bracket.start;
+fn count_together(roots: &[Root]) -> usize {
+    let is_apart = |count: &usize| hull(&roots[..*count]).end < roots[*count].hit.bracket.start;
     (1..roots.len()).find(is_apart).unwrap_or(roots.len())
 }
 
@@ -168,29 +131,32 @@ impl Subdivision<'_> {
     /// Follows each ray of a part on which F is made of these faces; says whether it did.
     pub(super) fn follow_made(&mut self, part: &Part, faces: &[Face], made: &Made) -> bool {
         let mut meetings = std::mem::take(&mut self.memory.meetings);
+        let mut roots = std::mem::take(&mut self.memory.roots);
         meetings.clear();
+        roots.clear();
         let is_followed = self.meet_faces(part, (faces, made), &mut meetings);
         if is_followed {
             // First the likely roots, so that others are asked for in what is left.
             for is_first in [true, false] {
                 for (number, face) in faces.iter().enumerate() {
-                    let is_asked = |meeting: &Meeting| (meeting.likely == number) == is_first;
-                    self.pursue_face(
-                        part,
-                        (number, face, made.has_directly(number)),
-                        &mut meetings,
-                        is_asked,
-                    );
+                    let asked = (number, face, made.has_directly(number));
+                    self.pursue_face(part, asked, is_first, (&mut meetings, &mut roots));
                 }
             }
-            let mut roots = std::mem::take(&mut self.memory.roots);
-            for meeting in &meetings {
-                meeting.put_roots(&mut roots);
-                self.end_at_faces(part, (faces, made), meeting, &roots);
+            for Meeting { place, .. } in meetings.iter().filter(|meeting| !meeting.is_clear) {
+                self.settle(Ended { place: *place, end: End::Lost(part.stretch) }, part.kernels);
             }
-            self.memory.roots = roots;
+            let order = |root: &Root| (root.meeting, root.hit.bracket.start);
+            roots.sort_unstable_by(|a, b| order(a).partial_cmp(&order(b)).expect("roots are numbers"));
+            for roots in roots.chunk_by(|a, b| a.meeting == b.meeting) {
+                let meeting = &meetings[roots[0].meeting];
+                if meeting.is_clear {
+                    self.end_at_faces(part, (faces, made), meeting, roots);
+                }
+            }
         }
         self.memory.meetings = meetings;
+        self.memory.roots = roots;
         is_followed
     }
 
@@ -231,60 +197,85 @@ impl Subdivision<'_> {
         true
     }
 
-    /// Pursues a face, part of F as `of` says, along those rays that are to ask for it and do not know its sign.
+    /// Pursues a face, part of F as `of` says, along those rays that do not know its sign: those that are likely to meet it, or all others.
     fn pursue_face(
         &mut self,
         part: &Part,
         (number, face, of): (usize, &Face, Option<Extreme>),
-        meetings: &mut [Meeting],
-        is_asked: impl Fn(&Meeting) -> bool,
+        is_first: bool,
+        (meetings, roots): (&mut [Meeting], &mut Vec<Root>),
     ) {
-        let (area, reach) = (self.beam(part.beam).area, part.form.reach);
-        let of = (of, self.tolerance(part));
-        for is_second in [false, true] {
-            // Behind a root at which a part of a union falls, F is negative.
-            if is_second && (face.bow.is_monotone() || of.0 == Some(Extreme::Least)) {
-                break;
+        let (area, reach, tolerance) = (self.beam(part.beam).area, part.form.reach, self.tolerance(part));
+        let mut pixels = std::mem::take(&mut self.memory.bowed);
+        pixels.clear();
+        for (place, meeting) in meetings.iter_mut().enumerate() {
+            if meeting.signs[number] != 0.0 || (meeting.likely == number) != is_first {
+                continue;
             }
-            let mut pixels = std::mem::take(&mut self.memory.bowed);
-            pixels.clear();
-            for (place, meeting) in meetings.iter_mut().enumerate().filter(|(_, meeting)| is_asked(meeting)) {
-                let (column, row) = self.position(meeting.place);
-                let ray = (place, self.tile.ray(column, row));
-                pixels.extend(meeting.pixel(
-                    (number, face),
-                    area.offset(column, row),
-                    (ray, reach),
-                    is_second,
-                ));
+            let (column, row) = self.position(meeting.place);
+            let at = area.offset(column, row);
+            // The likely one was asked before.
+            let sign = if is_first { None } else { face.sign(&face.bend.at(at.0, at.1), meeting.asked) };
+            match sign {
+                Some(sign) => meeting.signs[number] = sign,
+                None => {
+                    let ray = (place, self.tile.ray(column, row));
+                    pixels.push(face.met_by(ray, at, [meeting.asked, reach]));
+                }
             }
-            let mut ended = std::mem::take(&mut self.memory.ended);
-            self.pursue(&mut pixels, face.kernels, &face.bow, &mut ended);
-            for Ended { place, end } in ended.drain(..) {
-                meetings[place].learn(number, end, of);
-            }
-            self.memory.ended = ended;
-            self.memory.bowed = pixels;
         }
+        let mut ended = std::mem::take(&mut self.memory.ended);
+        self.pursue(&mut pixels, face.kernels, &face.bow, &mut ended);
+        pixels.clear();
+        for Ended { place, end } in ended.drain(..) {
+            let meeting = &mut meetings[place];
+            match end {
+                End::Free(sign) => meeting.signs[number] = sign,
+                End::Lost(_) => meeting.is_clear = false,
+                End::Hit(hit, sign) => {
+                    meeting.signs[number] = sign;
+                    meeting.narrow(of, (hit.bracket, sign, tolerance));
+                    roots.push(Root { meeting: place, face: number, hit });
+                    // Behind a root at which a part of a union falls, F is negative.
+                    let may_rise = face.bow.turns_after(sign) && of != Some(Extreme::Least);
+                    let behind = Span { start: hit.bracket.end, end: meeting.asked.end };
+                    let (column, row) = self.position(meeting.place);
+                    let at = area.offset(column, row);
+                    if may_rise
+                        && behind.start < behind.end
+                        && face.sign(&face.bend.at(at.0, at.1), behind).is_none()
+                    {
+                        let ray = (place, self.tile.ray(column, row));
+                        pixels.push(face.met_again_by(ray, at, [behind, reach]));
+                    }
+                }
+            }
+        }
+        self.pursue(&mut pixels, face.kernels, &face.bow, &mut ended);
+        for Ended { place, end } in ended.drain(..) {
+            match end {
+                End::Free(_) => {}
+                End::Lost(_) => meetings[place].is_clear = false,
+                End::Hit(hit, _) => roots.push(Root { meeting: place, face: number, hit }),
+            }
+        }
+        self.memory.ended = ended;
+        self.memory.bowed = pixels;
     }
 
-    /// Ends a ray by what is known of faces along it, or goes on with it.
+    /// Ends a ray by its roots of faces, in their order, or goes on with it.
     fn end_at_faces(
         &mut self,
         part: &Part,
         (faces, made): (&[Face], &Made),
-        meeting: &Meeting,
-        roots: &[(usize, Hit)],
+        Meeting { place, asked, signs, .. }: &Meeting,
+        mut roots: &[Root],
     ) {
-        let Meeting { place, asked, .. } = *meeting;
-        let Some(signs) = meeting.signs(faces) else {
-            return self.settle(Ended { place, end: End::Lost(part.stretch) }, part.kernels);
-        };
-        let mut signs = Signs { faces, made, signs, tolerance: self.tolerance(part) };
-        let (mut ahead, mut known_to) = (roots, asked.end);
-        while !ahead.is_empty() && self.memory.open[place] {
-            let (together, others) = ahead.split_at(count_together(ahead));
-            ahead = others;
+        let (place, mut known_to) = (*place, asked.end);
+        let mut signs = Signs { faces, made, signs: *signs, tolerance: self.tolerance(part) };
+        while !roots.is_empty() && self.memory.open[place] {
+            let (together, others) = roots.split_at(count_together(roots));
+            roots = others;
             let bracket = hull(together);
             if asked.end < bracket.start {
                 break;
@@ -295,7 +286,7 @@ impl Subdivision<'_> {
                 Event::Meeting(hit) => End::Hit(hit, 0.0),
                 Event::Contact => End::Lost(bracket),
                 Event::Unclear => {
-                    ahead = &[];
+                    roots = &[];
                     known_to = bracket.end;
                     End::Lost(bracket)
                 }
@@ -305,34 +296,6 @@ impl Subdivision<'_> {
         let rest = Span { start: known_to, end: part.stretch.end };
         if self.memory.open[place] && rest.start < rest.end {
             self.settle(Ended { place, end: End::Lost(rest) }, part.kernels);
-        }
-    }
-}
-
-impl Meeting {
-    /// The ray as it is to meet a face, for the first time or the second, unless what is to be known is.
-    fn pixel(
-        &mut self,
-        (number, face): (usize, &Face),
-        at: (f64, f64),
-        (ray, reach): ((usize, crate::Ray), Span),
-        is_second: bool,
-    ) -> Option<Pixel> {
-        let course = face.bend.at(at.0, at.1);
-        match (self.known[number], is_second) {
-            (Known::Unasked, false) => {
-                if let Some(sign) = face.sign(&course, self.asked) {
-                    self.known[number] = Known::signed(sign);
-                    return None;
-                }
-                Some(face.met_by(ray, at, [self.asked, reach]))
-            }
-            (Known::Course { sign, roots: [Some(first), None] }, true) if sign * face.bow.sign > 0.0 => {
-                let behind = Span { start: first.bracket.end, end: self.asked.end };
-                let may_rise = behind.start < behind.end && face.sign(&course, behind).is_none();
-                may_rise.then(|| face.met_again_by(ray, at, [behind, reach]))
-            }
-            _ => None,
         }
     }
 }
@@ -373,6 +336,6 @@ fn meeting(
             (likely, first) = (number, order);
         }
     }
-    let known = |sign: f64| if sign == 0.0 { Known::Unasked } else { Known::signed(sign) };
-    (made.sign(&signs) == 0.0).then(|| (Meeting { place, asked, likely, known: signs.map(known) }, is_likely))
+    let meeting = Meeting { place, asked, likely, signs, is_clear: true };
+    (made.sign(&signs) == 0.0).then_some((meeting, is_likely))
 }

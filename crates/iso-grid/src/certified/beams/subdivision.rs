@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 
 use super::beam::{Beam, count_in};
 use super::bundle::Bundle;
-use super::edges::Meeting;
+use super::edges::{Meeting, Root};
 use super::form::Form;
 use super::grazing::Attempts;
 use super::pixels::{Ended, Pixel};
@@ -20,7 +20,7 @@ use crate::certified::cells::Cell;
 use crate::certified::clip::Clip;
 use crate::certified::kernels::{BATCH, Kernels};
 use crate::raster::Rays;
-use crate::{Hit, Kernel, Outcome, Span, Tile, Workspace};
+use crate::{Kernel, Outcome, Span, Tile, Workspace};
 
 /// Into how many stretches a beam is cut at most.
 const SLICES: usize = BATCH;
@@ -63,8 +63,7 @@ pub(crate) struct Memory {
     pub(super) bundles: Vec<Bundle>,
     pub(super) bowed: Vec<Pixel>,
     pub(super) meetings: Vec<Meeting>,
-    /// Those of the faces that a ray meets, each with the number of its face.
-    pub(super) roots: Vec<(usize, Hit)>,
+    pub(super) roots: Vec<Root>,
     /// How rays ended that were pursued.
     pub(super) ended: Vec<Ended>,
     /// What was found out last of rounding.
