@@ -10,7 +10,11 @@ use super::grazing::{BLOCK, DOUBTFUL};
 use super::pixels::{End, Ended, halves_from};
 use super::subdivision::{Part, Subdivision};
 use crate::area::Area;
-use crate::{Hit, Span};
+use crate::{Hit, Outcome, Span};
+
+/// Roots of faces that are no farther apart, as part of t, are as close as a few roundings bring them: a body that is so thin, or a gap, cannot be
+/// told from a contact.
+const CLOSE: f64 = 64.0 * f64::EPSILON;
 
 /// A ray of a part on which F may be zero, and what is known of each face along it.
 #[derive(Clone, Copy, Debug)]
@@ -284,6 +288,10 @@ impl Subdivision<'_> {
                 _ if bracket.end < asked.start => continue,
                 Event::Nothing => continue,
                 Event::Meeting(hit) => End::Hit(hit, 0.0),
+                Event::Contact if bracket.end - bracket.start <= CLOSE * bracket.end => {
+                    let t = bracket.start + 0.5 * (bracket.end - bracket.start);
+                    return self.end(place, Outcome::Touch(Hit { t, bracket }));
+                }
                 Event::Contact => End::Lost(bracket),
                 Event::Unclear => {
                     roots = &[];
