@@ -155,6 +155,11 @@ impl Subdivision<'_> {
 
     /// What a function of which F is made comes to on a part: a face if it is smooth.
     fn made(&mut self, part: &Part, kernels: u32, faces: &mut Vec<Face>) -> Option<Made> {
+        // Bodies that touch have faces in common.
+        let is_same = |face: &Face| self.kernels(face.kernels).are(self.kernels(kernels));
+        if let Some(known) = faces.iter().position(is_same) {
+            return Some(Made::Face(known));
+        }
         let (t, center) = self.center(part);
         let bounds = self.beam(part.beam).bounds_in_space(part.form.reach);
         let both = [(center, center), bounds];
