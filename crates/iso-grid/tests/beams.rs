@@ -8,7 +8,7 @@ use iso_expr::{Ast, Interpreter, Program};
 use iso_grid::{Certified, Hit, Outcome, Raster, Ray, Region, Span, Surface, Tile, Tracer, Workspace};
 
 /// Formulas, half sides of their regions, and what they are tried for.
-const SCENES: [(&str, f64, &str); 42] = [
+const SCENES: [(&str, f64, &str); 48] = [
     ("(x^2+y^2-1)^2 + 4z^2 + 0.5x - 0.2", 1.5, "a classic"),
     ("x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8", 2.6, "parts in front of each other"),
     ("sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)", 5.0, "cut by the region's faces"),
@@ -52,6 +52,20 @@ const SCENES: [(&str, f64, &str); 42] = [
     ("min(z - sin(9x)sin(9y)/9, x^2+y^2+z^2-0.4, y+0.5)", 1.2, "a ball on wavy ground"),
     ("min(x^2+y^2-z-0.3, 2-exp(x)-exp(z)+y^2, x^6+y^6+z^6-0.1)", 1.3, "seams of faces that bend both ways"),
     ("max(min(x+y, z-0.3), min(x-y, -z-0.3), x^2+y^2+z^2-1)", 1.4, "edges and seams that meet"),
+    ("max(min(0.2-x^2-y^2, 0.3-z^2), min(x, y+z), x^2+y^2+z^2-1)", 1.3, "tubes that meet faces"),
+    (
+        "min(max(abs(x), abs(y), abs(z)) - 0.5, max(abs(x)-0.3, abs(y)-0.3, abs(z-1)-0.5))",
+        1.6,
+        "a box on a box",
+    ),
+    (
+        "min(max(abs(x), abs(y), abs(z)) - 0.5, max(x^2+y^2-0.2, z-0.5, 0.5-z))",
+        1.3,
+        "a disk without thickness on a box",
+    ),
+    ("max(x^2+y^2-0.5, z-0.2x, 0.2x-z)", 1.3, "a disk without thickness"),
+    ("min(max(0.1-x^2, y^2+z^2-0.5), max(0.1-y^2, x^2+z^2-0.5))", 1.3, "bodies with a cleft"),
+    ("min(0.1-x^2-y^2, x^2+y^2+z^2-0.2, 0.3-x^2-(y-z)^2)", 1.2, "holes, and a ball in them"),
     ("max(min(-1, sqrt(0.3 - z)), x)", 1.0, "undefined where a part that decides nothing is"),
     ("min(max(1, y - 2, asin(z + 0.4)), x^2+y^2+z^2-0.7)", 1.0, "the same of a union"),
     (SHARP, 1.3, "a sharp blend, whose exponentials underflow not far from the surface"),
@@ -177,9 +191,15 @@ fn agree(a: Outcome, b: Outcome) -> bool {
     }
 }
 
-/// Whether two rays end alike.
+/// Whether two rays end alike, and touch the surface at about the same place if they do.
 fn is_same(a: Outcome, b: Outcome) -> bool {
-    std::mem::discriminant(&a) == std::mem::discriminant(&b)
+    let is_near = match (a, b) {
+        (Outcome::Touch(Hit { bracket: a, .. }), Outcome::Touch(Hit { bracket: b, .. })) => {
+            a.start - b.end <= 1e-6 && b.start - a.end <= 1e-6
+        }
+        _ => true,
+    };
+    is_near && std::mem::discriminant(&a) == std::mem::discriminant(&b)
 }
 
 fn is_narrow(outcome: Outcome) -> bool {

@@ -56,9 +56,10 @@ enum Event {
 
 /// How the signs of faces change along a ray.
 struct Signs<'a> {
-    faces: &'a [Face],
     made: &'a Made,
     signs: [f64; MOST],
+    /// Whether each face is monotone along rays.
+    are_monotone: [bool; MOST],
     /// How wide the enclosure of a root may be.
     tolerance: f64,
 }
@@ -103,8 +104,8 @@ impl Signs<'_> {
             return Event::Meeting(root.hit);
         }
         let rises = |root: &Root| known[root.face] < 0.0;
-        let is_monotone = |root: &Root| self.faces[root.face].bow.is_monotone();
-        let is_simple = roots.iter().all(|root| is_monotone(root) && rises(root) == rises(&roots[0]));
+        let is_alike = |root: &Root| self.are_monotone[root.face] && rises(root) == rises(&roots[0]);
+        let is_simple = roots.iter().all(is_alike);
         let bracket = hull(roots);
         match (is_other, is_simple) {
             (true, true) if bracket.end - bracket.start <= self.tolerance => {
@@ -241,11 +242,12 @@ impl Subdivision<'_> {
                     meeting.narrow(of, (hit.bracket, sign, tolerance));
                     roots.push(Root { meeting: place, face: number, hit });
                     // Behind a root at which a part of a union falls, F is negative.
-                    let may_rise = face.bow.turns_after(sign) && of != Some(Extreme::Least);
+                    let is_last = of == Some(Extreme::Least) && sign > 0.0;
+                    let may_turn = face.bow.turns_after(sign) && !is_last;
                     let behind = Span { start: hit.bracket.end, end: meeting.asked.end };
                     let (column, row) = self.position(meeting.place);
                     let at = area.offset(column, row);
-                    if may_rise
+                    if may_turn
                         && behind.start < behind.end
                         && face.sign(&face.bend.at(at.0, at.1), behind).is_none()
                     {
@@ -276,7 +278,9 @@ impl Subdivision<'_> {
         mut roots: &[Root],
     ) {
         let (place, mut known_to) = (*place, asked.end);
-        let mut signs = Signs { faces, made, signs: *signs, tolerance: self.tolerance(part) };
+        let mut are_monotone = [true; MOST];
+        are_monotone.iter_mut().zip(faces).for_each(|(is, face)| *is = face.bow.is_monotone());
+        let mut signs = Signs { made, signs: *signs, are_monotone, tolerance: self.tolerance(part) };
         while !roots.is_empty() && self.memory.open[place] {
             let (together, others) = roots.split_at(count_together(roots));
             roots = others;
@@ -346,4 +350,96 @@ fn meeting(
     }
     let meeting = Meeting { place, asked, likely, signs, is_clear: true };
     (made.sign(&signs) == 0.0).then_some((meeting, is_likely))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn root(face: usize, start: f64, end: f64) -> Root {
+        Root { meeting: 0, face, hit: Hit { t: 0.5 * (start + end), bracket: Span { start, end } } }
+    }
+
+    fn of(extreme: Extreme, parts: impl IntoIterator<Item = Made>) -> Made {
+        Made::Of(extreme, parts.into_iter().collect())
+    }
+
+    fn least(faces: impl IntoIterator<Item = usize>) -> Made {
+        of(Extreme::Least, faces.into_iter().map(Made::Face))
+    }
+
+    fn greatest(faces: impl IntoIterator<Item = usize>) -> Made {
+        of(Extreme::Greatest, faces.into_iter().map(Made::Face))
+    }
+
+    fn passed(made: &Made, signs: [f64; MOST], roots: &[Root]) -> Event {
+        Signs { made, signs, are_monotone: [true, true, true, false], tolerance: 0.5 }.pass(roots)
+    }
+
+    const POSITIVE: [f64; MOST] = [1.0; MOST];
+
+    #[test]
+    fn a_union_is_met_at_the_first_root_and_an_intersection_at_the_last() {
+        let [first, second] = [root(0, 1.0, 1.1), root(1, 2.0, 2.1)];
+        for (made, expected) in [(least([0, 1]), first), (greatest([0, 1]), second)] {
+            let mut signs =
+                Signs { made: &made, signs: POSITIVE, are_monotone: [true; MOST], tolerance: 0.5 };
+            let found = [first, second].map(|root| signs.pass(&[root]));
+            let meetings = found.into_iter().filter(|event| *event == Event::Meeting(expected.hit)).count();
+            assert_eq!(meetings, 1, "{found:?}");
+            assert!(found.contains(&Event::Nothing));
+        }
+    }
+
+    /// At a ridge or in a groove, where it cannot be told which face is met.
+    #[test]
+    fn roots_at_which_all_faces_fall_are_met_together() {
+        let roots = [root(0, 1.0, 1.2), root(1, 1.1, 1.3)];
+        for made in [least([0, 1]), greatest([0, 1])] {
+            let Event::Meeting(hit) = passed(&made, POSITIVE, &roots) else { panic!("no meeting") };
+            assert_eq!(hit.bracket, Span { start: 1.0, end: 1.3 });
+            // Too far from each other to be one root, or of a face that may have turned.
+            assert_eq!(passed(&made, POSITIVE, &[root(0, 1.0, 1.4), root(1, 1.3, 1.7)]), Event::Unclear);
+            let bent =
+                if made.has_directly(0) == Some(Extreme::Least) { least([0, 3]) } else { greatest([0, 3]) };
+            assert_eq!(passed(&bent, POSITIVE, &[root(0, 1.0, 1.2), root(3, 1.1, 1.3)]), Event::Unclear);
+        }
+    }
+
+    #[test]
+    fn a_body_without_thickness_is_a_contact() {
+        let roots = [root(0, 1.0, 1.2), root(1, 1.1, 1.3)];
+        assert_eq!(passed(&greatest([0, 1]), [1.0, -1.0, 0.0, 0.0], &roots), Event::Contact);
+        // So is a gap without width, from inside.
+        assert_eq!(passed(&least([0, 1]), [-1.0, 1.0, 0.0, 0.0], &roots), Event::Contact);
+    }
+
+    #[test]
+    fn faces_that_decide_nothing_do_not_matter() {
+        // A face of a part that is cut away rises where another part is met.
+        let cut = || of(Extreme::Greatest, [Made::Face(1), Made::Face(2)]);
+        let made = of(Extreme::Least, [Made::Face(0), cut()]);
+        let roots = [root(0, 1.0, 1.2), root(1, 1.1, 1.3)];
+        assert_eq!(passed(&made, [1.0, -1.0, 1.0, 0.0], &roots), Event::Meeting(roots[0].hit));
+        assert_eq!(passed(&cut(), [0.0, -1.0, 1.0, 0.0], &[roots[1]]), Event::Nothing);
+        let both = of(Extreme::Greatest, [least([0, 1]), Made::Face(2)]);
+        assert_eq!(passed(&both, [1.0, -1.0, 1.0, 0.0], &roots), Event::Nothing);
+    }
+
+    /// The middle one of three falls to zero with two of them, and the third rises: in between it may have been zero before.
+    #[test]
+    fn what_several_faces_decide_together_is_unclear() {
+        let middle = of(Extreme::Greatest, [least([0, 1]), least([1, 2]), least([0, 2])]);
+        let roots = [root(0, 1.0, 1.2), root(1, 1.1, 1.3), root(2, 1.1, 1.2)];
+        assert_eq!(passed(&middle, [1.0, 1.0, -1.0, 0.0], &roots), Event::Unclear);
+    }
+
+    #[test]
+    fn roots_are_taken_together_as_far_as_their_brackets_overlap() {
+        let roots = [root(0, 1.0, 1.2), root(1, 1.1, 1.15), root(2, 1.2, 1.3), root(3, 1.31, 1.4)];
+        assert_eq!(
+            [count_together(&roots), count_together(&roots[1..]), count_together(&roots[3..])],
+            [3, 1, 1]
+        );
+    }
 }
