@@ -3,6 +3,7 @@
 //! Along a ray each of the functions changes its sign at its roots, of which it has no more than two. Elsewhere F has the sign that the minima
 //! and maxima of all signs have. So the ray meets the body at the first root behind which that is another one than before.
 
+use glam::DVec3;
 use iso_expr::Extreme;
 
 use super::faces::{Face, MOST, Made};
@@ -10,7 +11,7 @@ use super::grazing::{BLOCK, DOUBTFUL};
 use super::pixels::{End, Ended, halves_from};
 use super::subdivision::{Part, Subdivision};
 use crate::area::Area;
-use crate::{Hit, Outcome, Span};
+use crate::{Hit, Kernel, Outcome, Span, Workspace};
 
 /// Roots of faces that are no farther apart, as part of t, are as close as a few roundings bring them: a body that is so thin, or a gap, cannot be
 /// told from a contact.
@@ -46,8 +47,8 @@ pub(crate) struct Root {
 enum Event {
     /// F is not zero there.
     Nothing,
-    /// The ray meets the body.
-    Meeting(Hit),
+    /// The ray meets the body at the face of this number.
+    Meeting(usize, Hit),
     /// F may be zero there, and has the same sign behind.
     Contact,
     /// F may be zero there, and too little is known of it.
@@ -84,7 +85,7 @@ impl Signs<'_> {
         roots.iter().for_each(|root| self.signs[root.face] = -known[root.face]);
         let is_other = self.made.sign(&self.signs) != before;
         if let [root] = roots {
-            return if is_other { Event::Meeting(root.hit) } else { Event::Nothing };
+            return if is_other { Event::Meeting(root.face, root.hit) } else { Event::Nothing };
         }
         // What F comes to whatever signs these faces have, and if one alone has its own.
         let mut others = known;
@@ -101,7 +102,7 @@ impl Signs<'_> {
             signs == [before, -before]
         };
         if let Some(root) = roots.iter().find(decides) {
-            return Event::Meeting(root.hit);
+            return Event::Meeting(root.face, root.hit);
         }
         let rises = |root: &Root| known[root.face] < 0.0;
         let is_alike = |root: &Root| self.are_monotone[root.face] && rises(root) == rises(&roots[0]);
@@ -109,7 +110,7 @@ impl Signs<'_> {
         let bracket = hull(roots);
         match (is_other, is_simple) {
             (true, true) if bracket.end - bracket.start <= self.tolerance => {
-                Event::Meeting(Hit { bracket, ..roots[0].hit })
+                Event::Meeting(roots[0].face, Hit { bracket, ..roots[0].hit })
             }
             (true, _) => Event::Unclear,
             // What is made of functions that all rise or all fall does so too, and has the same sign at both ends.
@@ -275,9 +276,9 @@ impl Subdivision<'_> {
         part: &Part,
         (faces, made): (&[Face], &Made),
         Meeting { place, asked, signs, .. }: &Meeting,
-        mut roots: &[Root],
+        all: &[Root],
     ) {
-        let (place, mut known_to) = (*place, asked.end);
+        let (place, mut roots, mut known_to) = (*place, all, asked.end);
         let mut are_monotone = [true; MOST];
         are_monotone.iter_mut().zip(faces).for_each(|(is, face)| *is = face.bow.is_monotone());
         let mut signs = Signs { made, signs: *signs, are_monotone, tolerance: self.tolerance(part) };
@@ -291,7 +292,13 @@ impl Subdivision<'_> {
             let end = match signs.pass(together) {
                 _ if bracket.end < asked.start => continue,
                 Event::Nothing => continue,
-                Event::Meeting(hit) => End::Hit(hit, 0.0),
+                Event::Meeting(face, hit) => {
+                    let is_close = |root: &&Root| (root.hit.t - hit.t).abs() <= CLOSE * hit.t;
+                    if all.iter().filter(is_close).count() > 1 {
+                        self.put_normal(place, hit.t, faces[face].kernels);
+                    }
+                    End::Hit(hit, 0.0)
+                }
                 Event::Contact if bracket.end - bracket.start <= CLOSE * bracket.end => {
                     let t = bracket.start + 0.5 * (bracket.end - bracket.start);
                     return self.end(place, Outcome::Touch(Hit { t, bracket }));
@@ -308,6 +315,25 @@ impl Subdivision<'_> {
         let rest = Span { start: known_to, end: part.stretch.end };
         if self.memory.open[place] && rest.start < rest.end {
             self.settle(Ended { place, end: End::Lost(rest) }, part.kernels);
+        }
+    }
+}
+
+impl Subdivision<'_> {
+    /// Puts the normal of a face in its place, if normals are wanted: where others all but coincide with it, values of F are its own or theirs.
+    fn put_normal(&mut self, place: usize, t: f64, kernels: u32) {
+        let (column, row) = self.position(place);
+        let Some(normals) = &mut self.normals else { return };
+        let kernels = &self.kernels[kernels as usize];
+        let Workspace { points, scratch, counters, .. } = &mut *self.workspace;
+        points.replace(std::iter::once((&self.tile.ray(column, row), t)));
+        counters.gradient_evaluations += 1;
+        counters.operations += kernels.charge(Kernel::Gradients, 1);
+        let found = points.evaluate(kernels.over_points(Kernel::Gradients), scratch, 4);
+        if let [_, x, y, z] = found[..]
+            && let Some(normal) = DVec3::new(x, y, z).try_normalize()
+        {
+            normals[place] = normal;
         }
     }
 }
@@ -385,7 +411,8 @@ mod tests {
             let mut signs =
                 Signs { made: &made, signs: POSITIVE, are_monotone: [true; MOST], tolerance: 0.5 };
             let found = [first, second].map(|root| signs.pass(&[root]));
-            let meetings = found.into_iter().filter(|event| *event == Event::Meeting(expected.hit)).count();
+            let meeting = Event::Meeting(expected.face, expected.hit);
+            let meetings = found.into_iter().filter(|event| *event == meeting).count();
             assert_eq!(meetings, 1, "{found:?}");
             assert!(found.contains(&Event::Nothing));
         }
@@ -396,7 +423,7 @@ mod tests {
     fn roots_at_which_all_faces_fall_are_met_together() {
         let roots = [root(0, 1.0, 1.2), root(1, 1.1, 1.3)];
         for made in [least([0, 1]), greatest([0, 1])] {
-            let Event::Meeting(hit) = passed(&made, POSITIVE, &roots) else { panic!("no meeting") };
+            let Event::Meeting(_, hit) = passed(&made, POSITIVE, &roots) else { panic!("no meeting") };
             assert_eq!(hit.bracket, Span { start: 1.0, end: 1.3 });
             // Too far from each other to be one root, or of a face that may have turned.
             assert_eq!(passed(&made, POSITIVE, &[root(0, 1.0, 1.4), root(1, 1.3, 1.7)]), Event::Unclear);
@@ -420,7 +447,7 @@ mod tests {
         let cut = || of(Extreme::Greatest, [Made::Face(1), Made::Face(2)]);
         let made = of(Extreme::Least, [Made::Face(0), cut()]);
         let roots = [root(0, 1.0, 1.2), root(1, 1.1, 1.3)];
-        assert_eq!(passed(&made, [1.0, -1.0, 1.0, 0.0], &roots), Event::Meeting(roots[0].hit));
+        assert_eq!(passed(&made, [1.0, -1.0, 1.0, 0.0], &roots), Event::Meeting(0, roots[0].hit));
         assert_eq!(passed(&cut(), [0.0, -1.0, 1.0, 0.0], &[roots[1]]), Event::Nothing);
         let both = of(Extreme::Greatest, [least([0, 1]), Made::Face(2)]);
         assert_eq!(passed(&both, [1.0, -1.0, 1.0, 0.0], &roots), Event::Nothing);
