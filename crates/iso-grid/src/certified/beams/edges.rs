@@ -8,7 +8,7 @@ use iso_expr::Extreme;
 
 use super::faces::{Face, MOST, Made};
 use super::grazing::{BLOCK, DOUBTFUL};
-use super::pixels::{End, Ended, halves_from};
+use super::pixels::{End, Ended, Pixel, halves_from};
 use super::subdivision::{Part, Subdivision};
 use crate::area::Area;
 use crate::{Hit, Kernel, Outcome, Span, Workspace};
@@ -211,26 +211,11 @@ impl Subdivision<'_> {
         is_first: bool,
         (meetings, roots): (&mut [Meeting], &mut Vec<Root>),
     ) {
-        let (area, reach, tolerance) = (self.beam(part.beam).area, part.form.reach, self.tolerance(part));
+        let tolerance = self.tolerance(part);
         let mut pixels = std::mem::take(&mut self.memory.bowed);
-        pixels.clear();
-        for (place, meeting) in meetings.iter_mut().enumerate() {
-            if meeting.signs[number] != 0.0 || (meeting.likely == number) != is_first {
-                continue;
-            }
-            let (column, row) = self.position(meeting.place);
-            let at = area.offset(column, row);
-            // The likely one was asked before.
-            let sign = if is_first { None } else { face.sign(&face.bend.at(at.0, at.1), meeting.asked) };
-            match sign {
-                Some(sign) => meeting.signs[number] = sign,
-                None => {
-                    let ray = (place, self.tile.ray(column, row));
-                    pixels.push(face.met_by(ray, at, [meeting.asked, reach]));
-                }
-            }
-        }
         let mut ended = std::mem::take(&mut self.memory.ended);
+        pixels.clear();
+        self.ask_face(part, (number, face), is_first, (meetings, &mut pixels));
         self.pursue(&mut pixels, face.kernels, &face.bow, &mut ended);
         pixels.clear();
         for Ended { place, end } in ended.drain(..) {
@@ -244,16 +229,8 @@ impl Subdivision<'_> {
                     roots.push(Root { meeting: place, face: number, hit });
                     // Behind a root at which a part of a union falls, F is negative.
                     let is_last = of == Some(Extreme::Least) && sign > 0.0;
-                    let may_turn = face.bow.turns_after(sign) && !is_last;
-                    let behind = Span { start: hit.bracket.end, end: meeting.asked.end };
-                    let (column, row) = self.position(meeting.place);
-                    let at = area.offset(column, row);
-                    if may_turn
-                        && behind.start < behind.end
-                        && face.sign(&face.bend.at(at.0, at.1), behind).is_none()
-                    {
-                        let ray = (place, self.tile.ray(column, row));
-                        pixels.push(face.met_again_by(ray, at, [behind, reach]));
+                    if face.bow.turns_after(sign) && !is_last {
+                        pixels.extend(self.again(part, face, (place, meeting), hit.bracket.end));
                     }
                 }
             }
@@ -268,6 +245,49 @@ impl Subdivision<'_> {
         }
         self.memory.ended = ended;
         self.memory.bowed = pixels;
+    }
+
+    /// Puts the rays that are to meet a face of this number among the pixels. Of others the sign is known by now.
+    fn ask_face(
+        &self,
+        part: &Part,
+        (number, face): (usize, &Face),
+        is_first: bool,
+        (meetings, pixels): (&mut [Meeting], &mut Vec<Pixel>),
+    ) {
+        let (area, reach) = (self.beam(part.beam).area, part.form.reach);
+        for (place, meeting) in meetings.iter_mut().enumerate() {
+            if meeting.signs[number] != 0.0 || (meeting.likely == number) != is_first {
+                continue;
+            }
+            let (column, row) = self.position(meeting.place);
+            let (a, b) = area.offset(column, row);
+            // The likely one was asked before.
+            let sign = if is_first { None } else { face.sign(&face.bend.at(a, b), meeting.asked) };
+            match sign {
+                Some(sign) => meeting.signs[number] = sign,
+                None => {
+                    let ray = (place, self.tile.ray(column, row));
+                    pixels.push(face.met_by(ray, (a, b), [meeting.asked, reach]));
+                }
+            }
+        }
+    }
+
+    /// A ray that is to meet a face again behind its first root, if it may.
+    fn again(
+        &self,
+        part: &Part,
+        face: &Face,
+        (place, meeting): (usize, &Meeting),
+        start: f64,
+    ) -> Option<Pixel> {
+        let (column, row) = self.position(meeting.place);
+        let (a, b) = self.beam(part.beam).area.offset(column, row);
+        let behind = Span { start, end: meeting.asked.end };
+        let may_turn = behind.start < behind.end && face.sign(&face.bend.at(a, b), behind).is_none();
+        let ray = (place, self.tile.ray(column, row));
+        may_turn.then(|| face.met_again_by(ray, (a, b), [behind, part.form.reach]))
     }
 
     /// Ends a ray by its roots of faces, in their order, or goes on with it.
@@ -317,9 +337,7 @@ impl Subdivision<'_> {
             self.settle(Ended { place, end: End::Lost(rest) }, part.kernels);
         }
     }
-}
 
-impl Subdivision<'_> {
     /// Puts the normal of a face in its place, if normals are wanted: where others all but coincide with it, values of F are its own or theirs.
     fn put_normal(&mut self, place: usize, t: f64, kernels: u32) {
         let (column, row) = self.position(place);
