@@ -43,7 +43,7 @@ pub struct Fitted {
 struct Glimpse {
     /// The box around it.
     held: Region,
-    /// On how many axes it meets faces of the cube.
+    /// On how many axes it may meet faces of the cube.
     axes_met: usize,
     /// Whether it is cut off, and nothing of it is in the cube's inner half.
     is_scrap: bool,

@@ -48,7 +48,7 @@ pub(crate) enum Section {
     Hints,
     /// The program after simplification
     Simplified,
-    /// A program with the same signs, if that is what rays are followed by
+    /// The function with the same signs that rays are followed by, often F itself
     Signs,
     /// The program that rays are followed by with its three derivatives, after simplification
     Gradient,

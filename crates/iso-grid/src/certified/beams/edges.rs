@@ -150,7 +150,7 @@ impl Subdivision<'_> {
                 }
             }
             for Meeting { place, .. } in meetings.iter().filter(|meeting| !meeting.is_clear) {
-                self.settle(Ended { place: *place, end: End::Lost(part.stretch) }, part.kernels);
+                self.search_one(self.position(*place), part.stretch, part.kernels);
             }
             let order = |root: &Root| (root.meeting, root.hit.bracket.start);
             roots.sort_unstable_by(|a, b| order(a).partial_cmp(&order(b)).expect("roots are numbers"));
@@ -309,32 +309,31 @@ impl Subdivision<'_> {
             if asked.end < bracket.start {
                 break;
             }
-            let end = match signs.pass(together) {
-                _ if bracket.end < asked.start => continue,
-                Event::Nothing => continue,
+            match signs.pass(together) {
+                _ if bracket.end < asked.start => {}
+                Event::Nothing => {}
                 Event::Meeting(face, hit) => {
                     let is_close = |root: &&Root| (root.hit.t - hit.t).abs() <= CLOSE * hit.t;
                     if all.iter().filter(is_close).count() > 1 {
                         self.put_normal(place, hit.t, faces[face].kernels);
                     }
-                    End::Hit(hit, 0.0)
+                    return self.end(place, Outcome::Hit(hit));
                 }
                 Event::Contact if bracket.end - bracket.start <= CLOSE * bracket.end => {
                     let t = bracket.start + 0.5 * (bracket.end - bracket.start);
                     return self.end(place, Outcome::Touch(Hit { t, bracket }));
                 }
-                Event::Contact => End::Lost(bracket),
+                Event::Contact => self.search_one(self.position(place), bracket, part.kernels),
                 Event::Unclear => {
                     roots = &[];
                     known_to = bracket.end;
-                    End::Lost(bracket)
+                    self.search_one(self.position(place), bracket, part.kernels);
                 }
-            };
-            self.settle(Ended { place, end }, part.kernels);
+            }
         }
         let rest = Span { start: known_to, end: part.stretch.end };
         if self.memory.open[place] && rest.start < rest.end {
-            self.settle(Ended { place, end: End::Lost(rest) }, part.kernels);
+            self.search_one(self.position(place), rest, part.kernels);
         }
     }
 

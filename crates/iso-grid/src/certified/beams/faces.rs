@@ -97,7 +97,7 @@ fn deciding(extreme: Extreme) -> f64 {
 }
 
 impl Subdivision<'_> {
-    /// Follows each ray of a part on which F is made of a few functions that each bend upwards or are monotone, by minima and maxima; says
+    /// Follows each ray of a part on which F is made by minima and maxima of a few functions that each bend one way or are monotone; says
     /// whether it did.
     pub(super) fn follow_edge(&mut self, part: &Part) -> bool {
         if !self.is_fit(part) {
