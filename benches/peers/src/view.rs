@@ -71,7 +71,7 @@ impl SquareView {
     /// # Errors
     /// When the radius is no positive number.
     pub fn camera(&self) -> Result<Camera, Box<dyn Error>> {
-        let view = View::LookAt { eye: self.eye(), target: self.target(), up: Self::up() };
+        let view = View::LookAt { eye: self.eye(), target: self.target(), up: Some(Self::up()) };
         let projection = Projection::Orthographic { view_width: Some(2.0 * self.radius) };
         Ok(Camera::new(view, projection, &self.region()?, self.size()?)?)
     }

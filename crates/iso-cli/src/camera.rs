@@ -16,10 +16,7 @@ fn view(flags: &CameraFlags, middle: DVec3) -> View {
         unreachable!("cameras orbit the region by default");
     };
     match flags.eye {
-        Some(eye) => {
-            let target = flags.target.unwrap_or(middle);
-            View::LookAt { eye, target, up: flags.up.unwrap_or_else(|| usual_up(target - eye)) }
-        }
+        Some(eye) => View::LookAt { eye, target: flags.target.unwrap_or(middle), up: flags.up },
         None => View::Orbit {
             yaw: flags.yaw.unwrap_or(yaw),
             pitch: flags.pitch.unwrap_or(pitch),
@@ -27,11 +24,6 @@ fn view(flags: &CameraFlags, middle: DVec3) -> View {
             target: flags.target,
         },
     }
-}
-
-/// What is up in the picture unless it is said: z, or y where one looks along z.
-fn usual_up(sight: DVec3) -> DVec3 {
-    if sight.x == 0.0 && sight.y == 0.0 { DVec3::Y } else { DVec3::Z }
 }
 
 /// The projection that `flags` describe.

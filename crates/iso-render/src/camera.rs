@@ -28,8 +28,9 @@ pub enum View {
         eye: DVec3,
         /// The point in the middle of the picture.
         target: DVec3,
-        /// A direction that points up in the picture; it need not be perpendicular to the line of sight.
-        up: DVec3,
+        /// A direction that points up in the picture; it need not be perpendicular to the line of sight. By default z, or y where that is
+        /// along z.
+        up: Option<DVec3>,
     },
 }
 
@@ -265,13 +266,15 @@ fn place(view: View, frame: &Frame<'_>) -> Result<(DVec3, DVec3, DVec3), CameraE
             Ok((target + distance * outward, -outward, up))
         }
         View::LookAt { eye, target, up } => {
-            let all = eye + target + up;
+            let all = eye + target + up.unwrap_or_default();
             checked("the eye, the target and the up direction", "finite", all.length(), all.is_finite())?;
             let forward = (target - eye).try_normalize().ok_or(CameraError::NoDirection)?;
-            let up = up.try_normalize().ok_or(CameraError::NoUp)?;
-            if forward.cross(up).length() < 1e-9 {
-                return Err(CameraError::NoUp);
-            }
+            let is_along = |up: DVec3| forward.cross(up).length() < 1e-9;
+            let up = match up {
+                Some(up) => up.try_normalize().filter(|up| !is_along(*up)).ok_or(CameraError::NoUp)?,
+                None if is_along(DVec3::Z) => DVec3::Y,
+                None => DVec3::Z,
+            };
             Ok((eye, forward, up))
         }
     }
@@ -416,11 +419,22 @@ mod tests {
         [along(right, camera.middle[0]), along(down, camera.middle[1])]
     }
 
+    /// A middle that was computed is seldom straight below.
+    #[test]
+    fn y_is_up_where_one_looks_along_z() {
+        let size = Size::new(8, 8).unwrap();
+        for (eye, up) in [(DVec3::new(1e-17, 0.0, 5.0), DVec3::Y), (DVec3::new(5.0, 0.0, 1e-17), DVec3::Z)] {
+            let view = View::LookAt { eye, target: DVec3::ZERO, up: None };
+            let camera = Camera::new(view, Projection::DEFAULT, &region(), size).unwrap();
+            assert!((camera.up() - up).length() < CLOSE, "{}", camera.up());
+        }
+    }
+
     #[test]
     fn degenerate_views_are_refused() {
         let size = Size::new(8, 8).unwrap();
         let new = |view, projection| Camera::new(view, projection, &region(), size).map(|_| ());
-        let look = |eye, target, up| new(View::LookAt { eye, target, up }, Projection::DEFAULT);
+        let look = |eye, target, up| new(View::LookAt { eye, target, up: Some(up) }, Projection::DEFAULT);
         assert_eq!(look(DVec3::ONE, DVec3::ONE, DVec3::Z), Err(CameraError::NoDirection));
         assert_eq!(look(DVec3::ZERO, DVec3::Z, DVec3::Z), Err(CameraError::NoUp));
         assert_eq!(look(DVec3::ZERO, DVec3::Y, DVec3::ZERO), Err(CameraError::NoUp));
