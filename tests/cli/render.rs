@@ -382,6 +382,17 @@ fn cameras_can_stand_anywhere() {
 }
 
 #[test]
+fn summaries_say_what_was_drawn() {
+    let case = Case::new();
+    let formula = "a := 2; x^2 + y^2 + a*z^2";
+    let json = render(&case, formula, &["--set", "a=3", "--level", "0.5", "--json"]).exits(0).json();
+    assert_eq!((&json["formula"], &json["level"]), (&formula.into(), &0.5.into()));
+    assert_eq!((&json["settings"][0]["name"], &json["settings"][0]["value"]), (&"a".into(), &3.0.into()));
+    let json = render(&case, SPHERE, &["--json"]).exits(0).json();
+    assert!(json["level"].is_null() && json["settings"].is_null(), "{json}");
+}
+
+#[test]
 fn smooth_pictures_have_the_size_asked_for() {
     let case = Case::new();
     let json = render(&case, SPHERE, &["--smooth", "4", "--json"]).exits(0).json();
