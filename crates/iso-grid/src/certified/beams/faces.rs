@@ -116,7 +116,7 @@ impl Subdivision<'_> {
     }
 
     /// The numbers of the kernels of which those of a number are the least or the greatest, if they are.
-    fn faces_of(&mut self, kernels: u32) -> Option<(Extreme, Vec<u32>)> {
+    pub(super) fn faces_of(&mut self, kernels: u32) -> Option<(Extreme, Vec<u32>)> {
         if !self.kernels(kernels).may_be_shortened() {
             return None;
         }

@@ -13,7 +13,7 @@ use crate::Kernel;
 
 /// Second derivatives are asked for beams of so many columns or rows: they say little about larger ones, and smaller ones are not
 /// worth it.
-const SIZES: RangeInclusive<usize> = 4..=16;
+pub(super) const SIZES: RangeInclusive<usize> = 4..=16;
 
 /// How many powers of two there are up to the largest of these sizes, 1 included.
 const CLASSES: usize = SIZES.end().ilog2() as usize + 1;
@@ -60,7 +60,8 @@ impl Subdivision<'_> {
     /// Follows each ray of a part on which F bends one way; says whether it did.
     pub(super) fn follow_bent(&mut self, part: &Part) -> bool {
         let size = self.size(part);
-        if !self.is_fit(part) || self.memory.attempts.are_vain(size) {
+        let is_known = part.form.slope.radius.is_finite();
+        if !is_known || !self.is_fit(part) || self.memory.attempts.are_vain(size) {
             return false;
         }
         let found = self.bend(part).and_then(|bend| {
@@ -92,9 +93,6 @@ impl Subdivision<'_> {
 
     /// F over a part to second order, where that is likely to help.
     fn bend(&mut self, part: &Part) -> Option<Bend> {
-        if !part.form.slope.radius.is_finite() {
-            return None;
-        }
         self.kernels(part.kernels).over_boxes(Kernel::HessianEnclosures)?;
         let (t, center) = self.center(part);
         let jet = self.jet_at(center, part.kernels)?;

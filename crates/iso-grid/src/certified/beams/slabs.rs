@@ -7,7 +7,9 @@ use iso_expr::Interval;
 
 use super::beam::Beam;
 use super::form::{Ball, Form, Gradient};
+use super::grazing::SIZES;
 use super::subdivision::{Part, Subdivision};
+use crate::area::Area;
 use crate::batch::Affine;
 use crate::certified::classify::free_of_zero;
 use crate::certified::kernels::{BATCH, bounds_between};
@@ -126,9 +128,26 @@ impl Subdivision<'_> {
         }
         if has_forms {
             self.keep_by_forms(slabs);
+        } else if self.are_left_to_faces(slabs) {
+            let part = |&Slab { beam, kernels, stretch, reach, is_inside, .. }: &Slab| Part {
+                beam,
+                kernels,
+                stretch,
+                form: Form::unknown(reach),
+                is_inside,
+            };
+            self.memory.ahead.extend(slabs.iter().map(part));
         } else {
             self.keep_by_gradients(slabs);
         }
+    }
+
+    /// Whether the gradients of F itself are not asked for on slabs where it is made of faces, as those of each say more.
+    fn are_left_to_faces(&mut self, slabs: &[Slab]) -> bool {
+        let Some(&Slab { beam, kernels, .. }) = slabs.first() else { return false };
+        let Area { width, height, .. } = self.beam(beam).area;
+        let are_fit = width.max(height) >= *SIZES.start() && slabs.iter().all(|slab| slab.is_inside);
+        are_fit && self.faces_of(kernels).is_some()
     }
 
     /// Keeps slabs that may hold roots, as far as affine forms tell, which know how F depends on column, row and t.
