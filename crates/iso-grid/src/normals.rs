@@ -89,8 +89,8 @@ pub fn normals(
 /// A point at which a normal is asked for: where on the ray of this place in a tile.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Asked {
-    place: usize,
-    t: f64,
+    pub(crate) place: usize,
+    pub(crate) t: f64,
 }
 
 /// The shorter formula that the tracer knows around some points of a block.
@@ -117,7 +117,7 @@ fn unanswered(asked: &[Asked], outcomes: &[Outcome], normals: &[DVec3]) -> impl 
 }
 
 /// Puts the normals in their places that are asked for along the rays of a tile.
-fn answer(
+pub(crate) fn answer(
     kernel: &dyn BatchKernel,
     workspace: &mut Workspace,
     tile: Tile<'_>,

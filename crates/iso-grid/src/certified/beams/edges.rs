@@ -3,7 +3,6 @@
 //! Along a ray each of the functions changes its sign at its roots, of which it has no more than two. Elsewhere F has the sign that the minima
 //! and maxima of all signs have. So the ray meets the body at the first root behind which that is another one than before.
 
-use glam::DVec3;
 use iso_expr::Extreme;
 
 use super::faces::{Face, MOST, Made};
@@ -11,7 +10,7 @@ use super::grazing::{BLOCK, DOUBTFUL};
 use super::pixels::{End, Ended, Pixel, halves_from};
 use super::subdivision::{Part, Subdivision};
 use crate::area::Area;
-use crate::{Hit, Kernel, Outcome, Span, Workspace};
+use crate::{Hit, Outcome, Span};
 
 /// Roots of faces that are no farther apart, as part of t, are as close as a few roundings bring them: a body that is so thin, or a gap, cannot be
 /// told from a contact.
@@ -312,13 +311,7 @@ impl Subdivision<'_> {
             match signs.pass(together) {
                 _ if bracket.end < asked.start => {}
                 Event::Nothing => {}
-                Event::Meeting(face, hit) => {
-                    let is_close = |root: &&Root| (root.hit.t - hit.t).abs() <= CLOSE * hit.t;
-                    if all.iter().filter(is_close).count() > 1 {
-                        self.put_normal(place, hit.t, faces[face].kernels);
-                    }
-                    return self.end(place, Outcome::Hit(hit));
-                }
+                Event::Meeting(face, hit) => return self.meet(place, hit, faces[face].kernels),
                 Event::Contact if bracket.end - bracket.start <= CLOSE * bracket.end => {
                     let t = bracket.start + 0.5 * (bracket.end - bracket.start);
                     return self.end(place, Outcome::Touch(Hit { t, bracket }));
@@ -334,23 +327,6 @@ impl Subdivision<'_> {
         let rest = Span { start: known_to, end: part.stretch.end };
         if self.memory.open[place] && rest.start < rest.end {
             self.search_one(self.position(place), rest, part.kernels);
-        }
-    }
-
-    /// Puts the normal of a face in its place, if normals are wanted: where others all but coincide with it, values of F are its own or theirs.
-    fn put_normal(&mut self, place: usize, t: f64, kernels: u32) {
-        let (column, row) = self.position(place);
-        let Some(normals) = &mut self.normals else { return };
-        let kernels = &self.kernels[kernels as usize];
-        let Workspace { points, scratch, counters, .. } = &mut *self.workspace;
-        points.replace(std::iter::once((&self.tile.ray(column, row), t)));
-        counters.gradient_evaluations += 1;
-        counters.operations += kernels.charge(Kernel::Gradients, 1);
-        let found = points.evaluate(kernels.over_points(Kernel::Gradients), scratch, 4);
-        if let [_, x, y, z] = found[..]
-            && let Some(normal) = DVec3::new(x, y, z).try_normalize()
-        {
-            normals[place] = normal;
         }
     }
 }

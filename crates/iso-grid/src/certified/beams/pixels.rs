@@ -3,7 +3,7 @@
 
 use super::bows::{Bow, Bowed};
 use super::subdivision::Subdivision;
-use crate::{Hit, Kernel, Outcome, Ray, Span, Workspace};
+use crate::{Hit, Kernel, Ray, Span, Workspace};
 
 /// How many values of F a ray is given at most before it is searched for its own.
 pub(super) const STEPS: usize = 10;
@@ -72,11 +72,11 @@ impl Subdivision<'_> {
         }
     }
 
-    /// Ends a ray, or searches it where the kernels of this number hold.
-    pub(super) fn settle(&mut self, Ended { place, end }: Ended, kernels: u32) {
+    /// Ends a ray that was pursued by kernels of a number, or searches it where those of another hold.
+    pub(super) fn settle(&mut self, Ended { place, end }: Ended, pursued_by: u32, kernels: u32) {
         match end {
             End::Free(_) => {}
-            End::Hit(hit, _) => self.end(place, Outcome::Hit(hit)),
+            End::Hit(hit, _) => self.meet(place, hit, pursued_by),
             End::Lost(wanted) => {
                 self.search_one(self.position(place), wanted, kernels);
             }

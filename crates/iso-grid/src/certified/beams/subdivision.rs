@@ -19,8 +19,9 @@ use crate::certified::Certified;
 use crate::certified::cells::Cell;
 use crate::certified::clip::Clip;
 use crate::certified::kernels::{BATCH, Kernels};
+use crate::normals::{Asked, answer};
 use crate::raster::Rays;
-use crate::{Kernel, Outcome, Span, Tile, Workspace};
+use crate::{Hit, Kernel, Outcome, Span, Tile, Workspace};
 
 /// Into how many stretches a beam is cut at most.
 const SLICES: usize = BATCH;
@@ -66,6 +67,8 @@ pub(crate) struct Memory {
     pub(super) roots: Vec<Root>,
     /// How rays ended that were pursued.
     pub(super) ended: Vec<Ended>,
+    /// The hits whose normals are still to be found, each with the number of kernels of a function that has its own.
+    pub(super) met: Vec<(u32, Asked)>,
     /// What was found out last of rounding.
     pub(super) rounding: Option<Rounding>,
 }
@@ -118,6 +121,7 @@ impl<'a> Subdivision<'a> {
         memory.ahead.clear();
         memory.beams.clear();
         memory.beams.push(beam);
+        memory.met.clear();
         memory.rounding = None;
         memory.attempts = Attempts::default();
         memory.open.clear();
@@ -165,6 +169,7 @@ impl<'a> Subdivision<'a> {
                 self.divide(&part);
             }
         }
+        self.put_normals();
         self.workspace.tile = self.memory;
     }
 
@@ -286,9 +291,40 @@ impl<'a> Subdivision<'a> {
         }
         let local = &self.kernels[kernels as usize];
         let outcome = self.certified.search(self.workspace, ray, clip, (Cell::SMALLEST, stretch), local);
-        if outcome != Outcome::Miss {
-            self.end(row * self.tile.width() + column, outcome);
+        let place = row * self.tile.width() + column;
+        match outcome {
+            Outcome::Miss => {}
+            Outcome::Hit(hit) => self.meet(place, hit, kernels),
+            _ => self.end(place, outcome),
         }
+    }
+
+    /// Notes that a ray meets the surface where F is the function of the kernels of this number, whose normal there is found
+    /// later, with those of others.
+    pub(super) fn meet(&mut self, place: usize, hit: Hit, kernels: u32) {
+        if self.normals.is_some() {
+            self.memory.met.push((kernels, Asked { place, t: hit.t }));
+        }
+        self.end(place, Outcome::Hit(hit));
+    }
+
+    /// Puts the normals of hits in their places, those of one function at a time.
+    fn put_normals(&mut self) {
+        let Some(normals) = &mut self.normals else { return };
+        let Workspace { asked, .. } = &mut *self.workspace;
+        let mut asked = std::mem::take(asked);
+        let met = &mut self.memory.met;
+        met.sort_by_key(|(kernels, _)| self.kernels[*kernels as usize].identity());
+        let is_same =
+            |a: u32, b: u32| self.kernels[a as usize].identity() == self.kernels[b as usize].identity();
+        for met in met.chunk_by(|a, b| is_same(a.0, b.0)) {
+            let kernels = &self.kernels[met[0].0 as usize];
+            asked.clear();
+            asked.extend(met.iter().map(|(_, asked)| *asked));
+            self.workspace.counters.operations += kernels.charge(Kernel::Gradients, asked.len());
+            answer(kernels.over_points(Kernel::Gradients), self.workspace, self.tile, &asked, normals);
+        }
+        self.workspace.asked = asked;
     }
 
     /// Notes how the search along a ray ends.
