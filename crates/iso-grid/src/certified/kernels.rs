@@ -69,6 +69,11 @@ impl Kernels {
         Some((*extreme, faces.iter().map(kernels).collect()))
     }
 
+    /// Kernels of the same function that are said to hold on a box.
+    pub(super) fn within(&self, domain: Bounds) -> Self {
+        Self { formula: Arc::clone(&self.formula), domain }
+    }
+
     /// Whether these are others of the same function on the same box. Threads may find out the same.
     pub(super) fn are(&self, others: &Self) -> bool {
         let is_same = || Arc::ptr_eq(&self.formula, &others.formula) || self.program() == others.program();

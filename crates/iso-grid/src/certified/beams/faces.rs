@@ -1,22 +1,34 @@
 //! The functions of which a body is made by minima and maxima, in any order, each smooth by itself. On a part most of them are of one sign.
 
-use iso_expr::{Decoration, Extreme};
+use std::sync::Arc;
+
+use iso_expr::{Decoration, Extreme, Interval};
 
 use super::bend::{Bend, Course};
 use super::bows::{Bow, ways};
 use super::form::{Form, Gradient};
 use super::pixels::Pixel;
 use super::subdivision::{Part, Subdivision};
+use crate::certified::kernels::bounds_between;
 use crate::{Kernel, Ray, Span};
 
 /// More functions are left to smaller parts, where fewer of them matter.
 pub(super) const MOST: usize = 4;
 
-/// One of the functions of which F is made, where it may have roots.
+/// One of the functions of which F is made, where it may have roots, to first order.
+struct Outline {
+    /// The number of its kernels.
+    kernels: u32,
+    form: Form,
+    /// It and its gradient in the middle of the part.
+    jet: [Interval; 4],
+}
+
+/// One of the functions of which F is made, where it may have roots, to second order.
 pub(super) struct Face {
     /// The number of its kernels.
     pub(super) kernels: u32,
-    /// To second order, or its negative: as `bow` has it.
+    /// The function, or its negative: as `bow` has it.
     pub(super) bend: Bend,
     pub(super) bow: Bow,
 }
@@ -103,15 +115,34 @@ impl Subdivision<'_> {
         if !self.is_fit(part) {
             return false;
         }
-        let mut faces = Vec::new();
-        match self.made_of_several(part, part.kernels, &mut faces) {
+        let mut outlines = Vec::new();
+        match self.made_of_several(part, part.kernels, &mut outlines) {
             Some(Made::Signed(_)) => true,
             Some(Made::Face(number)) => {
-                let Face { kernels, bend, bow } = &faces[number];
-                self.follow_smooth(part, bend, (*kernels, bow))
+                self.follow_face(part, &outlines[number]);
+                true
             }
-            Some(made) => self.follow_made(part, &faces, &made),
-            None => false,
+            Some(made) if outlines.len() <= MOST => {
+                let faces: Option<Vec<_>> = outlines.iter().map(|outline| self.face(part, outline)).collect();
+                faces.is_some_and(|faces| self.follow_made(part, &faces, &made))
+            }
+            _ => false,
+        }
+    }
+
+    /// Goes on with a part on which F has the sign of one function.
+    fn follow_face(&mut self, part: &Part, outline: &Outline) {
+        let (lo, hi) = self.beam(part.beam).bounds_in_space(part.form.reach);
+        let kernels = self.kernels(outline.kernels).within(bounds_between(lo, hi));
+        let part = Part { kernels: self.number_of(Arc::new(kernels)), form: outline.form, ..*part };
+        let is_monotone = part.form.is_monotone();
+        let Some(part) = (if is_monotone { part.narrowed() } else { Some(part) }) else { return };
+        if is_monotone && self.follow_even(&part) {
+            return;
+        }
+        let face = self.face(&part, outline);
+        if !face.is_some_and(|face| self.follow_smooth(&part, &face.bend, (part.kernels, &face.bow))) {
+            self.divide(&part);
         }
     }
 
@@ -130,16 +161,16 @@ impl Subdivision<'_> {
         found
     }
 
-    /// What a minimum or a maximum comes to on a part, and the faces of which it is made; `None` if it is neither, or some are not smooth or
-    /// they are too many.
-    fn made_of_several(&mut self, part: &Part, kernels: u32, faces: &mut Vec<Face>) -> Option<Made> {
+    /// What a minimum or a maximum comes to on a part, and the functions of which it is made there; `None` if it is neither, or where it may
+    /// be undefined.
+    fn made_of_several(&mut self, part: &Part, kernels: u32, outlines: &mut Vec<Outline>) -> Option<Made> {
         let (extreme, numbers) = self.faces_of(kernels)?;
-        let before = faces.len();
+        let before = outlines.len();
         let mut parts = Vec::new();
         for number in numbers {
-            match self.made(part, number, faces)? {
+            match self.made(part, number, outlines)? {
                 Made::Signed(sign) if sign == deciding(extreme) => {
-                    faces.truncate(before);
+                    outlines.truncate(before);
                     return Some(Made::Signed(sign));
                 }
                 Made::Signed(_) => {}
@@ -153,12 +184,15 @@ impl Subdivision<'_> {
         })
     }
 
-    /// What a function of which F is made comes to on a part: a face if it is smooth.
-    fn made(&mut self, part: &Part, kernels: u32, faces: &mut Vec<Face>) -> Option<Made> {
+    /// What a function of which F is made comes to on a part.
+    fn made(&mut self, part: &Part, kernels: u32, outlines: &mut Vec<Outline>) -> Option<Made> {
         // Bodies that touch have faces in common.
-        let is_same = |face: &Face| self.kernels(face.kernels).are(self.kernels(kernels));
-        if let Some(known) = faces.iter().position(is_same) {
+        let is_same = |outline: &Outline| self.kernels(outline.kernels).are(self.kernels(kernels));
+        if let Some(known) = outlines.iter().position(is_same) {
             return Some(Made::Face(known));
+        }
+        if self.faces_of(kernels).is_some() {
+            return self.made_of_several(part, kernels, outlines);
         }
         let (t, center) = self.center(part);
         let bounds = self.beam(part.beam).bounds_in_space(part.form.reach);
@@ -169,22 +203,20 @@ impl Subdivision<'_> {
             return None;
         }
         let jet = jet.map(|found| found.interval);
-        if let Some(gradient) = Gradient::new(over_all) {
-            let form = Form::new(self.beam(part.beam), part.form.reach, (t, center), jet[0], &gradient);
-            if let Some(sign) = form.sign() {
-                return Some(Made::Signed(sign));
-            }
-            if let Some(bend) = self.expand(part, (t, center), jet, kernels) {
-                let error = self.error_of_values(part, kernels)?;
-                let bow = Bow::new(&bend, form.slope, error, self.tolerance(part))?;
-                let bend = if bow.sign < 0.0 { bend.negated() } else { bend };
-                if faces.len() == MOST {
-                    return None;
-                }
-                faces.push(Face { kernels, bend, bow });
-                return Some(Made::Face(faces.len() - 1));
-            }
-        }
-        self.made_of_several(part, kernels, faces)
+        let gradient = Gradient::new(over_all)?;
+        let form = Form::new(self.beam(part.beam), part.form.reach, (t, center), jet[0], &gradient);
+        Some(form.sign().map(Made::Signed).unwrap_or_else(|| {
+            outlines.push(Outline { kernels, form, jet });
+            Made::Face(outlines.len() - 1)
+        }))
+    }
+
+    /// A function of which F is made, to second order; `None` where it is not smooth, or neither bends one way nor is monotone.
+    fn face(&mut self, part: &Part, &Outline { kernels, form, jet }: &Outline) -> Option<Face> {
+        let bend = self.expand(part, self.center(part), jet, kernels)?;
+        let error = self.error_of_values(part, kernels)?;
+        let bow = Bow::new(&bend, form.slope, error, self.tolerance(part))?;
+        let bend = if bow.sign < 0.0 { bend.negated() } else { bend };
+        Some(Face { kernels, bend, bow })
     }
 }

@@ -44,31 +44,46 @@ impl Sight {
     }
 }
 
+impl Part {
+    /// What is left of a part on which F is monotone, where roots may lie.
+    pub(super) fn narrowed(&self) -> Option<Self> {
+        let (roots, stretch) = (self.form.roots(), self.stretch);
+        let stretch = Span { start: stretch.start.max(roots.lo), end: stretch.end.min(roots.hi) };
+        (stretch.start <= stretch.end).then_some(Self { stretch, ..*self })
+    }
+}
+
 impl Subdivision<'_> {
     /// Goes on with a stretch on which F is monotone along every ray.
     pub(super) fn follow(&mut self, part: &Part) {
-        let form = &part.form;
-        let roots = form.roots();
-        let stretch = part.stretch;
-        let narrowed = Span { start: stretch.start.max(roots.lo), end: stretch.end.min(roots.hi) };
-        if narrowed.start > narrowed.end {
+        let Some(narrowed) = part.narrowed() else { return };
+        if self.follow_even(&narrowed) || self.follow_edge(&narrowed) {
             return;
         }
-        let part = &Part { stretch: narrowed, ..*part };
-        let beam = self.beam(part.beam);
-        let is_small = beam.area.width.max(beam.area.height) <= SMALL;
-        let model = form.model(beam);
-        if form.is_even() && (is_small || self.most_hit(part, &model)) {
-            self.follow_each(part, &model);
-        } else if self.follow_edge(part) {
-            // Nothing is left to do.
-        } else if !is_small {
-            self.divide_beam(part);
-        } else if narrowed.end - narrowed.start < 0.5 * (stretch.end - stretch.start) {
-            self.examine(part.beam..part.beam + 1, (narrowed, 1), part.kernels);
+        let [before, after] = [part, &narrowed].map(|part| part.stretch.end - part.stretch.start);
+        if !self.is_small(part) {
+            self.divide_beam(&narrowed);
+        } else if after < 0.5 * before {
+            self.examine(part.beam..part.beam + 1, (narrowed.stretch, 1), part.kernels);
         } else {
-            self.divide(part);
+            self.divide(&narrowed);
         }
+    }
+
+    /// Follows each ray of a part on which F is monotone with slopes that are much alike, unless too many may be followed in vain; says
+    /// whether it did.
+    pub(super) fn follow_even(&mut self, part: &Part) -> bool {
+        let model = part.form.model(self.beam(part.beam));
+        let is_followed = part.form.is_even() && (self.is_small(part) || self.most_hit(part, &model));
+        if is_followed {
+            self.follow_each(part, &model);
+        }
+        is_followed
+    }
+
+    fn is_small(&self, part: &Part) -> bool {
+        let Area { width, height, .. } = self.beam(part.beam).area;
+        width.max(height) <= SMALL
     }
 
     /// Whether few rays of a part may have a root, but are likely to have none. Of large parts only the corners are asked.

@@ -105,10 +105,14 @@ impl Subdivision<'_> {
     /// The number of kernels that hold on a box: those `around` it, if it decides nothing more there.
     fn kernels_on(&mut self, lo: DVec3, hi: DVec3, around: u32) -> u32 {
         let kernels = self.kernels(around);
-        if !kernels.may_be_shortened() && kernels.cover(&bounds_between(lo, hi)) {
+        let is_covered = kernels.cover(&bounds_between(lo, hi));
+        if is_covered && !kernels.may_be_shortened() {
             return around;
         }
         let found = self.certified.places.kernels(lo, hi);
+        if is_covered && kernels.operations(Kernel::Values) <= found.operations(Kernel::Values) {
+            return around;
+        }
         let known = [0, around, self.kernels.len() as u32 - 1];
         let known = known.into_iter().find(|number| self.kernels(*number).are(&found));
         known.unwrap_or_else(|| self.number_of(found))
