@@ -92,6 +92,15 @@ impl Program {
         self.nodes.iter().any(Node::may_be_decided)
     }
 
+    /// Whether its only output is certainly a number at all points with finite coordinates.
+    ///
+    /// # Panics
+    /// When the program has another number of outputs than one.
+    pub fn is_defined_everywhere(&self) -> bool {
+        assert_eq!(self.outputs.len(), 1, "it is said of one output");
+        self.enclosures([Interval::ENTIRE; 3])[self.outputs[0].index()].decoration >= Decoration::Defined
+    }
+
     /// What a box decides: enclosures from the arguments on, and decisions from the output back to what is asked for.
     fn findings(&self, domain: [Interval; 3]) -> Findings {
         let mut findings = Findings {

@@ -28,6 +28,8 @@ pub(super) struct Formula {
     /// Before each kernel is compiled that is not compiled ahead.
     patience_for: [Patience; Kernel::ALL.len()],
     has_branches: bool,
+    /// Whether it is certainly a number everywhere, found when first asked for.
+    is_defined_everywhere: OnceLock<bool>,
     /// What is left of it in places must have so many operations to have forms. These take long to make, and pay where rays of many places
     /// ask for the same ones.
     least_with_forms: usize,
@@ -147,6 +149,7 @@ impl Formula {
             compiled: OnceLock::new(),
             patience,
             has_branches,
+            is_defined_everywhere: OnceLock::new(),
             operations: Default::default(),
             faces: OnceLock::new(),
         }
@@ -159,6 +162,11 @@ impl Formula {
     /// Whether there is anything that a box may decide.
     pub(super) fn has_branches(&self) -> bool {
         self.has_branches
+    }
+
+    /// Whether it is certainly a number everywhere.
+    pub(super) fn is_defined_everywhere(&self) -> bool {
+        *self.is_defined_everywhere.get_or_init(|| self.program().is_defined_everywhere())
     }
 
     /// Whether its forms are asked for.

@@ -90,6 +90,11 @@ impl Kernels {
         self.formula.has_branches()
     }
 
+    /// Whether the function is certainly a number everywhere.
+    pub(super) fn are_defined_everywhere(&self) -> bool {
+        self.formula.is_defined_everywhere()
+    }
+
     /// How many operations a kernel takes.
     pub(super) fn operations(&self, kernel: Kernel) -> u64 {
         self.formula.operations(kernel)

@@ -124,3 +124,15 @@ fn shortened_programs_have_the_same_signs() {
     assert!(shortened > 1000, "only {shortened} were shortened");
     assert!(differ > 100, "only {differ} values were let go");
 }
+
+#[test]
+fn what_may_be_undefined_somewhere_is_not_said_to_be_a_number_everywhere() {
+    for formula in
+        ["x^3 - 2*y + 1", "min(x, sin(y)) + abs(z)", "sqrt(x^2 + y^2 + 1)", "if(x < y, x, floor(z))"]
+    {
+        assert!(program(formula).is_defined_everywhere(), "{formula}");
+    }
+    for formula in ["1/x", "sqrt(x)", "min(x, ln(y))", "tan(z)", "x^y", "asin(x)"] {
+        assert!(!program(formula).is_defined_everywhere(), "{formula}");
+    }
+}

@@ -166,16 +166,20 @@ impl Subdivision<'_> {
     fn made_of_several(&mut self, part: &Part, kernels: u32, outlines: &mut Vec<Outline>) -> Option<Made> {
         let (extreme, numbers) = self.faces_of(kernels)?;
         let before = outlines.len();
-        let mut parts = Vec::new();
+        let (mut parts, mut is_decided) = (Vec::new(), false);
         for number in numbers {
             match self.made(part, number, outlines)? {
-                Made::Signed(sign) if sign == deciding(extreme) => {
-                    outlines.truncate(before);
-                    return Some(Made::Signed(sign));
-                }
-                Made::Signed(_) => {}
+                Made::Signed(sign) => is_decided |= sign == deciding(extreme),
                 made => parts.push(made),
             }
+            // Where one of the others is undefined, so is the whole.
+            if is_decided && self.kernels(kernels).are_defined_everywhere() {
+                break;
+            }
+        }
+        if is_decided {
+            outlines.truncate(before);
+            return Some(Made::Signed(deciding(extreme)));
         }
         Some(match parts.len() {
             0 => Made::Signed(-deciding(extreme)),
