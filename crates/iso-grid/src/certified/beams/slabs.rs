@@ -23,6 +23,9 @@ pub(super) const LEAST_OVERLAP: f64 = 1.0 / (1u64 << 30) as f64;
 /// Over beams of more columns and rows F is enclosed before forms are asked for.
 const VAGUE: usize = 8;
 
+/// Faces of no more operations each, on average, are asked for instead of forms of F.
+const SHORT: u64 = 8;
+
 /// A stretch of a beam, and a box around its part in the region.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slab {
@@ -130,9 +133,7 @@ impl Subdivision<'_> {
             let count = self.drop_free(slabs);
             slabs = &mut slabs[..count];
         }
-        if has_forms {
-            self.keep_by_forms(slabs);
-        } else if self.are_left_to_faces(slabs) {
+        if self.are_left_to_faces(slabs, has_forms) {
             let part = |&Slab { beam, kernels, stretch, reach, is_inside, .. }: &Slab| Part {
                 beam,
                 kernels,
@@ -141,17 +142,22 @@ impl Subdivision<'_> {
                 is_inside,
             };
             self.memory.ahead.extend(slabs.iter().map(part));
+        } else if has_forms {
+            self.keep_by_forms(slabs);
         } else {
             self.keep_by_gradients(slabs);
         }
     }
 
-    /// Whether the gradients of F itself are not asked for on slabs where it is made of faces, as those of each say more.
-    fn are_left_to_faces(&mut self, slabs: &[Slab]) -> bool {
+    /// Whether nothing is asked of F itself on slabs where it is made of faces, as those say more. Forms are asked for where faces are
+    /// long.
+    fn are_left_to_faces(&mut self, slabs: &[Slab], has_forms: bool) -> bool {
         let Some(&Slab { beam, kernels, .. }) = slabs.first() else { return false };
         let Area { width, height, .. } = self.beam(beam).area;
         let are_fit = width.max(height) >= *SIZES.start() && slabs.iter().all(|slab| slab.is_inside);
-        are_fit && self.faces_of(kernels).is_some()
+        let operations = self.kernels(kernels).operations(Kernel::Values);
+        let are_short = |faces: usize| operations <= SHORT * faces as u64;
+        are_fit && self.faces_of(kernels).is_some_and(|(_, faces)| !has_forms || are_short(faces.len()))
     }
 
     /// Keeps slabs that may hold roots, as far as affine forms tell, which know how F depends on column, row and t.
