@@ -5,8 +5,9 @@
 
 use iso_expr::Extreme;
 
-use super::faces::{Face, MOST, Made};
+use super::faces::Face;
 use super::grazing::{BLOCK, DOUBTFUL};
+use super::made::{Combinations, MOST, Made};
 use super::pixels::{End, Ended, Pixel, halves_from};
 use super::subdivision::{Part, Subdivision};
 use crate::area::Area;
@@ -29,13 +30,19 @@ pub(crate) struct Meeting {
     signs: [f64; MOST],
     /// Whether each face could be told that was asked for.
     is_clear: bool,
+    roots: Roots,
+}
+
+/// Where faces change their signs along a ray, in order.
+#[derive(Clone, Copy, Debug)]
+struct Roots {
+    all: [Root; 2 * MOST],
+    count: usize,
 }
 
 /// Where a face changes its sign along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Root {
-    /// The place of the ray among the meetings.
-    meeting: usize,
+struct Root {
     /// The number of the face.
     face: usize,
     hit: Hit,
@@ -56,7 +63,7 @@ enum Event {
 
 /// How the signs of faces change along a ray.
 struct Signs<'a> {
-    made: &'a Made,
+    made: &'a Combinations,
     signs: [f64; MOST],
     /// Whether each face is monotone along rays.
     are_monotone: [bool; MOST],
@@ -74,6 +81,31 @@ impl Meeting {
             }
             _ => {}
         }
+    }
+}
+
+/// None so far.
+impl Default for Roots {
+    fn default() -> Self {
+        let none = Root { face: 0, hit: Hit { t: f64::NAN, bracket: Span::default() } };
+        Self { all: [none; 2 * MOST], count: 0 }
+    }
+}
+
+impl Roots {
+    /// No face has more than two.
+    fn add(&mut self, root: Root) {
+        let mut place = self.count;
+        while place > 0 && self.all[place - 1].hit.bracket.start > root.hit.bracket.start {
+            self.all[place] = self.all[place - 1];
+            place -= 1;
+        }
+        self.all[place] = root;
+        self.count += 1;
+    }
+
+    fn in_order(&self) -> &[Root] {
+        &self.all[..self.count]
     }
 }
 
@@ -135,38 +167,37 @@ fn count_together(roots: &[Root]) -> usize {
 impl Subdivision<'_> {
     /// Follows each ray of a part on which F is made of these faces; says whether it did.
     pub(super) fn follow_made(&mut self, part: &Part, faces: &[Face], made: &Made) -> bool {
+        let made = &Combinations::new(made, faces.len());
         let mut meetings = std::mem::take(&mut self.memory.meetings);
-        let mut roots = std::mem::take(&mut self.memory.roots);
         meetings.clear();
-        roots.clear();
         let is_followed = self.meet_faces(part, (faces, made), &mut meetings);
         if is_followed {
             // First the likely roots, so that others are asked for in what is left.
             for is_first in [true, false] {
                 for (number, face) in faces.iter().enumerate() {
-                    let asked = (number, face, made.has_directly(number));
-                    self.pursue_face(part, asked, is_first, (&mut meetings, &mut roots));
+                    let asked = (number, face, made.extreme_of(number));
+                    self.pursue_face(part, asked, is_first, &mut meetings);
                 }
             }
-            for Meeting { place, .. } in meetings.iter().filter(|meeting| !meeting.is_clear) {
-                self.search_one(self.position(*place), part.stretch, part.kernels);
-            }
-            let order = |root: &Root| (root.meeting, root.hit.bracket.start);
-            roots.sort_unstable_by(|a, b| order(a).partial_cmp(&order(b)).expect("roots are numbers"));
-            for roots in roots.chunk_by(|a, b| a.meeting == b.meeting) {
-                let meeting = &meetings[roots[0].meeting];
-                if meeting.is_clear {
-                    self.end_at_faces(part, (faces, made), meeting, roots);
+            for meeting in &meetings {
+                if !meeting.is_clear {
+                    self.search_one(self.position(meeting.place), part.stretch, part.kernels);
+                } else if meeting.roots.count > 0 {
+                    self.end_at_faces(part, (faces, made), meeting);
                 }
             }
         }
         self.memory.meetings = meetings;
-        self.memory.roots = roots;
         is_followed
     }
 
     /// Notes the rays of a part that may have a root; says whether not too many may be followed in vain.
-    fn meet_faces(&self, part: &Part, (faces, made): (&[Face], &Made), meetings: &mut Vec<Meeting>) -> bool {
+    fn meet_faces(
+        &self,
+        part: &Part,
+        (faces, made): (&[Face], &Combinations),
+        meetings: &mut Vec<Meeting>,
+    ) -> bool {
         let (tolerance, reach) = (self.tolerance(part), part.form.reach);
         let Span { start, end } = part.stretch;
         // A little beyond the stretch, so that all is known around a root in it.
@@ -208,7 +239,7 @@ impl Subdivision<'_> {
         part: &Part,
         (number, face, of): (usize, &Face, Option<Extreme>),
         is_first: bool,
-        (meetings, roots): (&mut [Meeting], &mut Vec<Root>),
+        meetings: &mut [Meeting],
     ) {
         let tolerance = self.tolerance(part);
         let mut pixels = std::mem::take(&mut self.memory.bowed);
@@ -225,7 +256,7 @@ impl Subdivision<'_> {
                 End::Hit(hit, sign) => {
                     meeting.signs[number] = sign;
                     meeting.narrow(of, (hit.bracket, sign, tolerance));
-                    roots.push(Root { meeting: place, face: number, hit });
+                    meeting.roots.add(Root { face: number, hit });
                     // Behind a root at which a part of a union falls, F is negative.
                     let is_last = of == Some(Extreme::Least) && sign > 0.0;
                     if face.bow.turns_after(sign) && !is_last {
@@ -239,7 +270,7 @@ impl Subdivision<'_> {
             match end {
                 End::Free(_) => {}
                 End::Lost(_) => meetings[place].is_clear = false,
-                End::Hit(hit, _) => roots.push(Root { meeting: place, face: number, hit }),
+                End::Hit(hit, _) => meetings[place].roots.add(Root { face: number, hit }),
             }
         }
         self.memory.ended = ended;
@@ -293,11 +324,10 @@ impl Subdivision<'_> {
     fn end_at_faces(
         &mut self,
         part: &Part,
-        (faces, made): (&[Face], &Made),
-        Meeting { place, asked, signs, .. }: &Meeting,
-        all: &[Root],
+        (faces, made): (&[Face], &Combinations),
+        Meeting { place, asked, signs, roots, .. }: &Meeting,
     ) {
-        let (place, mut roots, mut known_to) = (*place, all, asked.end);
+        let (place, mut roots, mut known_to) = (*place, roots.in_order(), asked.end);
         let mut are_monotone = [true; MOST];
         are_monotone.iter_mut().zip(faces).for_each(|(is, face)| *is = face.bow.is_monotone());
         let mut signs = Signs { made, signs: *signs, are_monotone, tolerance: self.tolerance(part) };
@@ -346,7 +376,7 @@ fn signs_on(area: Area, block: Area, asked: Span, faces: &[Face]) -> [f64; MOST]
 /// A ray that is so many columns and rows off the middle, where faces have signs that are known all over its block or not; and whether it is
 /// likely to meet a face. `None` if it has no root.
 fn meeting(
-    (faces, made): (&[Face], &Made),
+    (faces, made): (&[Face], &Combinations),
     of_block: [f64; MOST],
     (a, b): (f64, f64),
     (place, asked): (usize, Span),
@@ -362,12 +392,12 @@ fn meeting(
         let way = course.way_to_root(&face.bow);
         is_likely |= way.is_finite();
         // Of a union, the one that is met first decides, of an intersection the one that is met last.
-        let order = if made.has_directly(number) == Some(Extreme::Greatest) { -way } else { way };
+        let order = if made.extreme_of(number) == Some(Extreme::Greatest) { -way } else { way };
         if likely == usize::MAX || order < first {
             (likely, first) = (number, order);
         }
     }
-    let meeting = Meeting { place, asked, likely, signs, is_clear: true };
+    let meeting = Meeting { place, asked, likely, signs, is_clear: true, roots: Roots::default() };
     (made.sign(&signs) == 0.0).then_some((meeting, is_likely))
 }
 
@@ -376,7 +406,7 @@ mod tests {
     use super::*;
 
     fn root(face: usize, start: f64, end: f64) -> Root {
-        Root { meeting: 0, face, hit: Hit { t: 0.5 * (start + end), bracket: Span { start, end } } }
+        Root { face, hit: Hit { t: 0.5 * (start + end), bracket: Span { start, end } } }
     }
 
     fn of(extreme: Extreme, parts: impl IntoIterator<Item = Made>) -> Made {
@@ -392,6 +422,7 @@ mod tests {
     }
 
     fn passed(made: &Made, signs: [f64; MOST], roots: &[Root]) -> Event {
+        let made = &Combinations::new(made, MOST);
         Signs { made, signs, are_monotone: [true, true, true, false], tolerance: 0.5 }.pass(roots)
     }
 
@@ -401,8 +432,8 @@ mod tests {
     fn a_union_is_met_at_the_first_root_and_an_intersection_at_the_last() {
         let [first, second] = [root(0, 1.0, 1.1), root(1, 2.0, 2.1)];
         for (made, expected) in [(least([0, 1]), first), (greatest([0, 1]), second)] {
-            let mut signs =
-                Signs { made: &made, signs: POSITIVE, are_monotone: [true; MOST], tolerance: 0.5 };
+            let made = &Combinations::new(&made, MOST);
+            let mut signs = Signs { made, signs: POSITIVE, are_monotone: [true; MOST], tolerance: 0.5 };
             let found = [first, second].map(|root| signs.pass(&[root]));
             let meeting = Event::Meeting(expected.face, expected.hit);
             let meetings = found.into_iter().filter(|event| *event == meeting).count();
@@ -415,13 +446,11 @@ mod tests {
     #[test]
     fn roots_at_which_all_faces_fall_are_met_together() {
         let roots = [root(0, 1.0, 1.2), root(1, 1.1, 1.3)];
-        for made in [least([0, 1]), greatest([0, 1])] {
+        for (made, bent) in [(least([0, 1]), least([0, 3])), (greatest([0, 1]), greatest([0, 3]))] {
             let Event::Meeting(_, hit) = passed(&made, POSITIVE, &roots) else { panic!("no meeting") };
             assert_eq!(hit.bracket, Span { start: 1.0, end: 1.3 });
             // Too far from each other to be one root, or of a face that may have turned.
             assert_eq!(passed(&made, POSITIVE, &[root(0, 1.0, 1.4), root(1, 1.3, 1.7)]), Event::Unclear);
-            let bent =
-                if made.has_directly(0) == Some(Extreme::Least) { least([0, 3]) } else { greatest([0, 3]) };
             assert_eq!(passed(&bent, POSITIVE, &[root(0, 1.0, 1.2), root(3, 1.1, 1.3)]), Event::Unclear);
         }
     }
@@ -452,6 +481,14 @@ mod tests {
         let middle = of(Extreme::Greatest, [least([0, 1]), least([1, 2]), least([0, 2])]);
         let roots = [root(0, 1.0, 1.2), root(1, 1.1, 1.3), root(2, 1.1, 1.2)];
         assert_eq!(passed(&middle, [1.0, 1.0, -1.0, 0.0], &roots), Event::Unclear);
+    }
+
+    #[test]
+    fn roots_are_kept_in_order() {
+        let mut roots = Roots::default();
+        let [a, b, c] = [root(2, 1.0, 1.2), root(0, 1.1, 1.15), root(1, 1.3, 1.4)];
+        [c, a, b].into_iter().for_each(|root| roots.add(root));
+        assert_eq!(roots.in_order(), [a, b, c]);
     }
 
     #[test]

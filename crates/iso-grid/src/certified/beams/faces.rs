@@ -7,13 +7,11 @@ use iso_expr::{Decoration, Extreme, Interval};
 use super::bend::{Bend, Course};
 use super::bows::{Bow, ways};
 use super::form::{Form, Gradient};
+use super::made::{MOST, Made, deciding};
 use super::pixels::Pixel;
 use super::subdivision::{Part, Subdivision};
 use crate::certified::kernels::bounds_between;
 use crate::{Kernel, Ray, Span};
-
-/// More functions are left to smaller parts, where fewer of them matter.
-pub(super) const MOST: usize = 4;
 
 /// One of the functions of which F is made, where it may have roots, to first order.
 struct Outline {
@@ -59,52 +57,6 @@ impl Face {
         let course = self.bend.at(a, b);
         let way = course.way_to_second_root(&self.bow);
         Pixel::starting(ray, [wanted, reach], &course, &self.bow).rising().at_way(way)
-    }
-}
-
-/// What F, or a function of which it is made, comes to on a part.
-pub(super) enum Made {
-    /// It is of this sign everywhere.
-    Signed(f64),
-    /// It is the face of this number.
-    Face(usize),
-    /// It is zero where the least or the greatest of these is, and of the same sign elsewhere.
-    Of(Extreme, Vec<Self>),
-}
-
-impl Made {
-    /// Whether F is the least or the greatest of a face and what else there may be.
-    pub(super) fn has_directly(&self, face: usize) -> Option<Extreme> {
-        match self {
-            Self::Of(extreme, parts) => {
-                let is_face = |part: &Self| matches!(part, Self::Face(number) if *number == face);
-                parts.iter().any(is_face).then_some(*extreme)
-            }
-            _ => None,
-        }
-    }
-
-    /// The sign where faces have these, 0 where that is not known.
-    pub(super) fn sign(&self, of_faces: &[f64; MOST]) -> f64 {
-        match self {
-            Self::Signed(sign) => *sign,
-            Self::Face(number) => of_faces[*number],
-            Self::Of(extreme, parts) => {
-                let signs = parts.iter().map(|part| part.sign(of_faces));
-                match extreme {
-                    Extreme::Least => signs.fold(1.0, f64::min),
-                    Extreme::Greatest => signs.fold(-1.0, f64::max),
-                }
-            }
-        }
-    }
-}
-
-/// The sign that F has where any of its functions has it.
-fn deciding(extreme: Extreme) -> f64 {
-    match extreme {
-        Extreme::Least => -1.0,
-        Extreme::Greatest => 1.0,
     }
 }
 

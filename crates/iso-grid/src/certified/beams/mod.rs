@@ -23,6 +23,7 @@ mod edges;
 mod faces;
 mod form;
 mod grazing;
+mod made;
 mod monotone;
 mod pixels;
 mod rounding;

@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 
 use super::beam::{Beam, count_in};
 use super::bundle::Bundle;
-use super::edges::{Meeting, Root};
+use super::edges::Meeting;
 use super::form::Form;
 use super::grazing::Attempts;
 use super::pixels::{Ended, Pixel};
@@ -64,7 +64,6 @@ pub(crate) struct Memory {
     pub(super) bundles: Vec<Bundle>,
     pub(super) bowed: Vec<Pixel>,
     pub(super) meetings: Vec<Meeting>,
-    pub(super) roots: Vec<Root>,
     /// How rays ended that were pursued.
     pub(super) ended: Vec<Ended>,
     /// The hits whose normals are still to be found, each with the number of kernels of a function that has its own.

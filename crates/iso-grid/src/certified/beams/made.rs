@@ -1,0 +1,113 @@
+//! How F is made of smooth functions by minima and maxima.
+
+use iso_expr::Extreme;
+
+/// More functions are left to smaller parts, where fewer of them matter.
+pub(super) const MOST: usize = 4;
+
+/// How many combinations of signs there are, of which each is negative, unknown or positive.
+const COMBINATIONS: usize = 3_usize.pow(MOST as u32);
+
+/// What F, or a function of which it is made, comes to on a part.
+pub(super) enum Made {
+    /// It is of this sign everywhere.
+    Signed(f64),
+    /// It is the face of this number.
+    Face(usize),
+    /// It is zero where the least or the greatest of these is, and of the same sign elsewhere.
+    Of(Extreme, Vec<Self>),
+}
+
+impl Made {
+    /// The sign where faces have these, 0 where that is not known.
+    fn sign(&self, of_faces: &[f64; MOST]) -> f64 {
+        match self {
+            Self::Signed(sign) => *sign,
+            Self::Face(number) => of_faces[*number],
+            Self::Of(extreme, parts) => {
+                let signs = parts.iter().map(|part| part.sign(of_faces));
+                match extreme {
+                    Extreme::Least => signs.fold(1.0, f64::min),
+                    Extreme::Greatest => signs.fold(-1.0, f64::max),
+                }
+            }
+        }
+    }
+}
+
+/// The sign of F for all signs that its faces may have.
+pub(super) struct Combinations {
+    of: [f64; COMBINATIONS],
+    /// Whether F is the least or the greatest of each face and what else there may be.
+    direct: [Option<Extreme>; MOST],
+}
+
+impl Combinations {
+    /// Those of what is made of so many faces.
+    pub(super) fn new(made: &Made, faces: usize) -> Self {
+        let mut found = Self { of: [0.0; COMBINATIONS], direct: [None; MOST] };
+        for number in 0..3_usize.pow(faces as u32) {
+            let mut rest = number;
+            let mut signs = [0.0; MOST];
+            for sign in &mut signs[..faces] {
+                *sign = (rest % 3) as f64 - 1.0;
+                rest /= 3;
+            }
+            found.of[place_of(&signs)] = made.sign(&signs);
+        }
+        if let Made::Of(extreme, parts) = made {
+            for part in parts {
+                if let Made::Face(number) = part {
+                    found.direct[*number] = Some(*extreme);
+                }
+            }
+        }
+        found
+    }
+
+    /// The sign of F where faces have these, 0 where they are not known or too many.
+    #[inline]
+    pub(super) fn sign(&self, of_faces: &[f64; MOST]) -> f64 {
+        self.of[place_of(of_faces)]
+    }
+
+    /// Whether F is the least or the greatest of a face and what else there may be.
+    pub(super) fn extreme_of(&self, face: usize) -> Option<Extreme> {
+        self.direct[face]
+    }
+}
+
+/// Where the sign of F stands for these signs of faces.
+#[inline]
+fn place_of(&[a, b, c, d]: &[f64; MOST]) -> usize {
+    (40.0 + a + 3.0 * b + 9.0 * c + 27.0 * d) as usize
+}
+
+/// The sign that F has where any of its functions has it.
+pub(super) fn deciding(extreme: Extreme) -> f64 {
+    match extreme {
+        Extreme::Least => -1.0,
+        Extreme::Greatest => 1.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A corner is cut off a union: max(min(a, b, 1), c).
+    #[test]
+    fn combinations_are_those_of_minima_and_maxima() {
+        let union = Made::Of(Extreme::Least, vec![Made::Face(0), Made::Face(1), Made::Signed(1.0)]);
+        let made = Made::Of(Extreme::Greatest, vec![union, Made::Face(2)]);
+        let found = Combinations::new(&made, 3);
+        for a in [-1.0, 0.0, 1.0] {
+            for b in [-1.0, 0.0, 1.0] {
+                for c in [-1.0, 0.0, 1.0] {
+                    assert_eq!(found.sign(&[a, b, c, 0.0]), f64::max(f64::min(a, b), c), "{a}, {b}, {c}");
+                }
+            }
+        }
+        assert_eq!([0, 1, 2].map(|face| found.extreme_of(face)), [None, None, Some(Extreme::Greatest)]);
+    }
+}
