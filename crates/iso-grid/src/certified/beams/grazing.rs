@@ -11,9 +11,9 @@ use super::pixels::{Pixel, Verdict, halves_from};
 use super::subdivision::{Part, Subdivision};
 use crate::Kernel;
 
-/// Second derivatives are asked for beams of so many columns or rows: they say little about larger ones, and smaller ones are not
-/// worth it.
-pub(super) const SIZES: RangeInclusive<usize> = 4..=16;
+/// Second derivatives are asked for beams of so many columns or rows: they say little about larger ones, and a single ray is not worth
+/// it.
+pub(super) const SIZES: RangeInclusive<usize> = 2..=16;
 
 /// How many powers of two there are up to the largest of these sizes, 1 included.
 const CLASSES: usize = SIZES.end().ilog2() as usize + 1;
