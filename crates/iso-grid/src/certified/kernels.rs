@@ -69,7 +69,7 @@ impl Kernels {
         Some((*extreme, faces.iter().map(kernels).collect()))
     }
 
-    /// Kernels of the same function that are said to hold on a box.
+    /// Kernels of the same function that hold on a box, or along some rays in it that ask for nothing beyond.
     pub(super) fn within(&self, domain: Bounds) -> Self {
         Self { formula: Arc::clone(&self.formula), domain }
     }

@@ -181,7 +181,7 @@ impl Subdivision<'_> {
             }
             for meeting in &meetings {
                 if !meeting.is_clear {
-                    self.search_one(self.position(meeting.place), part.stretch, part.kernels);
+                    self.search_one(self.position(meeting.place), part.stretch);
                 } else if meeting.roots.count > 0 {
                     self.end_at_faces(part, (faces, made), meeting);
                 }
@@ -346,17 +346,17 @@ impl Subdivision<'_> {
                     let t = bracket.start + 0.5 * (bracket.end - bracket.start);
                     return self.end(place, Outcome::Touch(Hit { t, bracket }));
                 }
-                Event::Contact => self.search_one(self.position(place), bracket, part.kernels),
+                Event::Contact => self.search_one(self.position(place), bracket),
                 Event::Unclear => {
                     roots = &[];
                     known_to = bracket.end;
-                    self.search_one(self.position(place), bracket, part.kernels);
+                    self.search_one(self.position(place), bracket);
                 }
             }
         }
         let rest = Span { start: known_to, end: part.stretch.end };
         if self.memory.open[place] && rest.start < rest.end {
-            self.search_one(self.position(place), rest, part.kernels);
+            self.search_one(self.position(place), rest);
         }
     }
 }

@@ -83,7 +83,7 @@ impl Subdivision<'_> {
             let mut ended = std::mem::take(&mut self.memory.ended);
             self.pursue(&mut pixels[..count], kernels, bow, &mut ended);
             for ended in ended.drain(..) {
-                self.settle(ended, kernels, part.kernels);
+                self.settle(ended, kernels);
             }
             self.memory.ended = ended;
         }

@@ -117,7 +117,7 @@ impl Subdivision<'_> {
             for bundle in &*bundles {
                 bundle.hits().for_each(|(place, hit)| self.end(place, Outcome::Hit(hit)));
                 for (place, stretch) in bundle.lost() {
-                    self.search_one(self.position(place), stretch, part.kernels);
+                    self.search_one(self.position(place), stretch);
                 }
             }
         }
@@ -210,7 +210,7 @@ impl Subdivision<'_> {
             return None;
         }
         if reach.start > reach.end {
-            self.search_one((column, row), wanted, part.kernels);
+            self.search_one((column, row), wanted);
             return None;
         }
         Some([wanted, reach])

@@ -72,13 +72,13 @@ impl Subdivision<'_> {
         }
     }
 
-    /// Ends a ray that was pursued by kernels of a number, or searches it where those of another hold.
-    pub(super) fn settle(&mut self, Ended { place, end }: Ended, pursued_by: u32, kernels: u32) {
+    /// Ends a ray that was pursued by kernels of a number, or searches it.
+    pub(super) fn settle(&mut self, Ended { place, end }: Ended, kernels: u32) {
         match end {
             End::Free(_) => {}
-            End::Hit(hit, _) => self.meet(place, hit, pursued_by),
+            End::Hit(hit, _) => self.meet(place, hit, kernels),
             End::Lost(wanted) => {
-                self.search_one(self.position(place), wanted, kernels);
+                self.search_one(self.position(place), wanted);
             }
         }
     }

@@ -116,9 +116,7 @@ impl Subdivision<'_> {
         if is_covered && kernels.operations(Kernel::Values) <= found.operations(Kernel::Values) {
             return around;
         }
-        let known = [0, around, self.kernels.len() as u32 - 1];
-        let known = known.into_iter().find(|number| self.kernels(*number).are(&found));
-        known.unwrap_or_else(|| self.number_of(found))
+        self.known_number_of(found, around)
     }
 
     /// Keeps those slabs that may hold roots. All lie where the same kernels hold.

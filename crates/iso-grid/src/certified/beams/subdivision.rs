@@ -267,20 +267,28 @@ impl<'a> Subdivision<'a> {
         self.kernels.len() as u32 - 1
     }
 
+    /// The number of kernels, where they are likely to be those of number `other` or to have been given the last one.
+    pub(super) fn known_number_of(&mut self, kernels: Arc<Kernels>, other: u32) -> u32 {
+        let known = [0, other, self.kernels.len() as u32 - 1];
+        let known = known.into_iter().find(|number| self.kernels(*number).are(&kernels));
+        known.unwrap_or_else(|| self.number_of(kernels))
+    }
+
     /// Leaves a part to the search along single rays.
     pub(super) fn search_each(&mut self, part: &Part) {
         let area = self.beam(part.beam).area;
         for row in area.rows() {
             for column in area.columns() {
                 if self.memory.open[row * self.tile.width() + column] {
-                    self.search_one((column, row), part.stretch, part.kernels);
+                    self.search_one((column, row), part.stretch);
                 }
             }
         }
     }
 
-    /// Searches a stretch of the ray in a column and a row, where the kernels of this number hold.
-    pub(super) fn search_one(&mut self, (column, row): (usize, usize), stretch: Span, kernels: u32) {
+    /// Searches a stretch of the ray in a column and a row, by what F comes to in the place around it: what is left of F on a part has its
+    /// signs along the part's rays, and the search may look a little beyond.
+    pub(super) fn search_one(&mut self, (column, row): (usize, usize), stretch: Span) {
         let ray = self.tile.ray(column, row);
         let Some(clip) = Clip::new(&self.certified.region, &ray) else { return };
         let outer = clip.outer;
@@ -288,6 +296,9 @@ impl<'a> Subdivision<'a> {
         if stretch.start > stretch.end {
             return;
         }
+        let (start, end) = (ray.at(stretch.start), ray.at(stretch.end));
+        let kernels = self.certified.places.kernels(start.min(end), start.max(end));
+        let kernels = self.known_number_of(kernels, 0);
         let local = &self.kernels[kernels as usize];
         let outcome = self.certified.search(self.workspace, ray, clip, (Cell::SMALLEST, stretch), local);
         let place = row * self.tile.width() + column;
