@@ -20,6 +20,11 @@ impl Area {
         self.row..self.row + self.height
     }
 
+    /// How many columns or rows it has, whichever are more.
+    pub(crate) fn side(self) -> usize {
+        self.width.max(self.height)
+    }
+
     /// The places of its rays in a tile of so many columns, row by row.
     pub(crate) fn places(self, width: usize) -> impl Iterator<Item = usize> {
         self.rows().flat_map(move |row| self.columns().map(move |column| row * width + column))

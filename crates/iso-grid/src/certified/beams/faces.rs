@@ -1,5 +1,6 @@
 //! The functions of which a body is made by minima and maxima, in any order, each smooth by itself. On a part most of them are of one sign.
 
+use std::rc::Rc;
 use std::sync::Arc;
 
 use iso_expr::{Decoration, Extreme, Interval};
@@ -13,16 +14,19 @@ use super::subdivision::{Part, Subdivision};
 use crate::certified::kernels::bounds_between;
 use crate::{Kernel, Ray, Span};
 
-/// One of the functions of which F is made, where it may have roots, to first order.
-struct Outline {
+/// With more open ones on the way, no others are asked for: it is unlikely that those decide enough.
+const TOO_MANY: usize = 2 * MOST;
+
+/// One of the functions of which F is made, or F itself, where it may have roots, to first order.
+pub(super) struct Outline {
     /// The number of its kernels.
-    kernels: u32,
-    form: Form,
+    pub(super) kernels: u32,
+    pub(super) form: Form,
     /// It and its gradient in the middle of the part.
-    jet: [Interval; 4],
+    pub(super) jet: [Interval; 4],
 }
 
-/// One of the functions of which F is made, where it may have roots, to second order.
+/// The same to second order.
 pub(super) struct Face {
     /// The number of its kernels.
     pub(super) kernels: u32,
@@ -84,22 +88,23 @@ impl Subdivision<'_> {
 
     /// Goes on with a part on which F has the sign of one function.
     fn follow_face(&mut self, part: &Part, outline: &Outline) {
-        let (lo, hi) = self.beam(part.beam).bounds_in_space(part.form.reach);
-        let kernels = self.kernels(outline.kernels).within(bounds_between(lo, hi));
-        let part = Part { kernels: self.number_of(Arc::new(kernels)), form: outline.form, ..*part };
+        let part = Part { kernels: outline.kernels, form: outline.form, ..*part };
         let is_monotone = part.form.is_monotone();
         let Some(part) = (if is_monotone { part.narrowed() } else { Some(part) }) else { return };
         if is_monotone && self.follow_even(&part) {
             return;
         }
         let face = self.face(&part, outline);
-        if !face.is_some_and(|face| self.follow_smooth(&part, &face.bend, (part.kernels, &face.bow))) {
-            self.divide(&part);
+        if !face.is_some_and(|face| self.follow_smooth(&part, &face)) {
+            let (lo, hi) = self.beam(part.beam).bounds_in_space(part.form.reach);
+            let kernels = self.kernels(part.kernels).within(bounds_between(lo, hi));
+            let kernels = self.number_of(Arc::new(kernels));
+            self.divide(&Part { kernels, ..part });
         }
     }
 
     /// The numbers of the kernels of which those of a number are the least or the greatest, if they are.
-    pub(super) fn faces_of(&mut self, kernels: u32) -> Option<(Extreme, Vec<u32>)> {
+    pub(super) fn faces_of(&mut self, kernels: u32) -> Option<(Extreme, Rc<[u32]>)> {
         if !self.kernels(kernels).may_be_shortened() {
             return None;
         }
@@ -119,8 +124,8 @@ impl Subdivision<'_> {
         let (extreme, numbers) = self.faces_of(kernels)?;
         let before = outlines.len();
         let (mut parts, mut is_decided) = (Vec::new(), false);
-        for number in numbers {
-            match self.made(part, number, outlines)? {
+        for number in &*numbers {
+            match self.made(part, *number, outlines)? {
                 Made::Signed(sign) => is_decided |= sign == deciding(extreme),
                 made => parts.push(made),
             }
@@ -140,7 +145,7 @@ impl Subdivision<'_> {
         })
     }
 
-    /// What a function of which F is made comes to on a part.
+    /// What a function of which F is made comes to on a part. `None` as well where too many are open.
     fn made(&mut self, part: &Part, kernels: u32, outlines: &mut Vec<Outline>) -> Option<Made> {
         // Bodies that touch have faces in common.
         let is_same = |outline: &Outline| self.kernels(outline.kernels).are(self.kernels(kernels));
@@ -161,14 +166,15 @@ impl Subdivision<'_> {
         let jet = jet.map(|found| found.interval);
         let gradient = Gradient::new(over_all)?;
         let form = Form::new(self.beam(part.beam), part.form.reach, (t, center), jet[0], &gradient);
-        Some(form.sign().map(Made::Signed).unwrap_or_else(|| {
-            outlines.push(Outline { kernels, form, jet });
-            Made::Face(outlines.len() - 1)
-        }))
+        if let Some(sign) = form.sign() {
+            return Some(Made::Signed(sign));
+        }
+        outlines.push(Outline { kernels, form, jet });
+        (outlines.len() <= TOO_MANY).then(|| Made::Face(outlines.len() - 1))
     }
 
-    /// A function of which F is made, to second order; `None` where it is not smooth, or neither bends one way nor is monotone.
-    fn face(&mut self, part: &Part, &Outline { kernels, form, jet }: &Outline) -> Option<Face> {
+    /// A function of which F is made, or F itself, to second order; `None` where it is not smooth, or neither bends one way nor is monotone.
+    pub(super) fn face(&mut self, part: &Part, &Outline { kernels, form, jet }: &Outline) -> Option<Face> {
         let bend = self.expand(part, self.center(part), jet, kernels)?;
         let error = self.error_of_values(part, kernels)?;
         let bow = Bow::new(&bend, form.slope, error, self.tolerance(part))?;

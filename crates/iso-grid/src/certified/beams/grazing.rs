@@ -7,6 +7,7 @@ use iso_expr::{Decorated, Interval};
 
 use super::bend::Bend;
 use super::bows::{Bow, ways};
+use super::faces::{Face, Outline};
 use super::pixels::{Pixel, Verdict, halves_from};
 use super::subdivision::{Part, Subdivision};
 use crate::Kernel;
@@ -64,26 +65,20 @@ impl Subdivision<'_> {
         if !is_known || !self.is_fit(part) || self.memory.attempts.are_vain(size) {
             return false;
         }
-        let found = self.bend(part).and_then(|bend| {
-            let error = self.error_of_values(part, part.kernels)?;
-            Some((bend, Bow::new(&bend, part.form.slope, error, self.tolerance(part))?))
-        });
-        self.memory.attempts.note(size, found.is_some());
-        let Some((bend, bow)) = found else { return false };
-        let bend = if bow.sign < 0.0 { bend.negated() } else { bend };
-        self.follow_smooth(part, &bend, (part.kernels, &bow))
+        let face = self.outline(part).and_then(|outline| self.face(part, &outline));
+        self.memory.attempts.note(size, face.is_some());
+        face.is_some_and(|face| self.follow_smooth(part, &face))
     }
 
-    /// Follows each ray of a part on which F has the sign of a function that bends one way or is monotone, computed by kernels of a number;
-    /// says whether it did.
-    pub(super) fn follow_smooth(&mut self, part: &Part, bend: &Bend, (kernels, bow): (u32, &Bow)) -> bool {
+    /// Follows each ray of a part on which F has the sign of a function that bends one way or is monotone; says whether it did.
+    pub(super) fn follow_smooth(&mut self, part: &Part, Face { kernels, bend, bow }: &Face) -> bool {
         let mut pixels = std::mem::take(&mut self.memory.bowed);
         let count = self.start_bent(part, bend, bow, &mut pixels);
         if let Some(count) = count {
             let mut ended = std::mem::take(&mut self.memory.ended);
-            self.pursue(&mut pixels[..count], kernels, bow, &mut ended);
+            self.pursue(&mut pixels[..count], *kernels, bow, &mut ended);
             for ended in ended.drain(..) {
-                self.settle(ended, kernels);
+                self.settle(ended, *kernels);
             }
             self.memory.ended = ended;
         }
@@ -91,12 +86,13 @@ impl Subdivision<'_> {
         count.is_some()
     }
 
-    /// F over a part to second order, where that is likely to help.
-    fn bend(&mut self, part: &Part) -> Option<Bend> {
-        self.kernels(part.kernels).over_boxes(Kernel::HessianEnclosures)?;
-        let (t, center) = self.center(part);
-        let jet = self.jet_at(center, part.kernels)?;
-        self.expand(part, (t, center), jet, part.kernels)
+    /// F on a part to first order, where its second derivatives are likely to help.
+    fn outline(&mut self, part: &Part) -> Option<Outline> {
+        let &Part { kernels, form, .. } = part;
+        self.kernels(kernels).over_boxes(Kernel::HessianEnclosures)?;
+        let (_, center) = self.center(part);
+        let jet = self.jet_at(center, kernels)?;
+        Some(Outline { kernels, form, jet })
     }
 
     /// Whether second derivatives are likely to help with a part.
@@ -106,9 +102,8 @@ impl Subdivision<'_> {
     }
 
     /// How many columns or rows the beam of a part has.
-    fn size(&self, part: &Part) -> usize {
-        let area = self.beam(part.beam).area;
-        area.width.max(area.height)
+    pub(super) fn size(&self, part: &Part) -> usize {
+        self.beam(part.beam).area.side()
     }
 
     /// The middle of a part.

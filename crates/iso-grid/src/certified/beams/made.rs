@@ -65,7 +65,7 @@ impl Combinations {
         found
     }
 
-    /// The sign of F where faces have these, 0 where they are not known or too many.
+    /// The sign of F where faces have these, 0 where that is not known.
     #[inline]
     pub(super) fn sign(&self, of_faces: &[f64; MOST]) -> f64 {
         self.of[place_of(of_faces)]
@@ -79,8 +79,8 @@ impl Combinations {
 
 /// Where the sign of F stands for these signs of faces.
 #[inline]
-fn place_of(&[a, b, c, d]: &[f64; MOST]) -> usize {
-    (40.0 + a + 3.0 * b + 9.0 * c + 27.0 * d) as usize
+fn place_of(signs: &[f64; MOST]) -> usize {
+    signs.iter().rev().fold(0.0, |place, sign| 3.0 * place + (sign + 1.0)) as usize
 }
 
 /// The sign that F has where any of its functions has it.

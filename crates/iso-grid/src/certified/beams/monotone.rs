@@ -82,15 +82,14 @@ impl Subdivision<'_> {
     }
 
     fn is_small(&self, part: &Part) -> bool {
-        let Area { width, height, .. } = self.beam(part.beam).area;
-        width.max(height) <= SMALL
+        self.size(part) <= SMALL
     }
 
     /// Whether few rays of a part may have a root, but are likely to have none. Of large parts only the corners are asked.
     fn most_hit(&self, part: &Part, model: &Model) -> bool {
         let Beam { area, radii: [across, along], .. } = *self.beam(part.beam);
         let Span { start, end } = part.stretch;
-        if area.width.max(area.height) > LARGEST_COUNTED {
+        if area.side() > LARGEST_COUNTED {
             let corners = [(-across, -along), (across, -along), (-across, along), (across, along)];
             return corners.into_iter().all(|(a, b)| (start..=end).contains(&model.at(a, b)));
         }

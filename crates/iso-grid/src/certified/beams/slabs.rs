@@ -9,7 +9,6 @@ use super::beam::Beam;
 use super::form::{Ball, Form, Gradient};
 use super::grazing::SIZES;
 use super::subdivision::{Part, Subdivision};
-use crate::area::Area;
 use crate::batch::Affine;
 use crate::certified::classify::free_of_zero;
 use crate::certified::kernels::{BATCH, bounds_between};
@@ -123,7 +122,7 @@ impl Subdivision<'_> {
     fn keep_open(&mut self, mut slabs: &mut [Slab]) {
         let Some(&Slab { beam, kernels, .. }) = slabs.first() else { return };
         let (area, kernels) = (self.beam(beam).area, self.kernels(kernels));
-        let is_large = area.width.max(area.height) > VAGUE;
+        let is_large = area.side() > VAGUE;
         let has_forms = kernels.forms(self.forms()).is_some();
         if kernels.may_be_shortened() || has_forms && is_large {
             // The gradient of a formula with branches takes much longer than its values, which often say enough. Of large sets
@@ -151,8 +150,8 @@ impl Subdivision<'_> {
     /// long.
     fn are_left_to_faces(&mut self, slabs: &[Slab], has_forms: bool) -> bool {
         let Some(&Slab { beam, kernels, .. }) = slabs.first() else { return false };
-        let Area { width, height, .. } = self.beam(beam).area;
-        let are_fit = width.max(height) >= *SIZES.start() && slabs.iter().all(|slab| slab.is_inside);
+        let are_fit =
+            self.beam(beam).area.side() >= *SIZES.start() && slabs.iter().all(|slab| slab.is_inside);
         let operations = self.kernels(kernels).operations(Kernel::Values);
         let are_short = |faces: usize| operations <= SHORT * faces as u64;
         are_fit && self.faces_of(kernels).is_some_and(|(_, faces)| !has_forms || are_short(faces.len()))

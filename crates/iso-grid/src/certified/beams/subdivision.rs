@@ -1,5 +1,6 @@
 //! The subdivision of a tile into beams and of beams into stretches.
 
+use std::rc::Rc;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -84,7 +85,7 @@ pub(in crate::certified) struct Subdivision<'a> {
     /// Kernels by number. The first hold everywhere.
     pub(super) kernels: Vec<Arc<Kernels>>,
     /// The kernels of which each of some kernels is the least or the greatest, by number; `None` where it is neither.
-    pub(super) faces: FxHashMap<u32, Option<(Extreme, Vec<u32>)>>,
+    pub(super) faces: FxHashMap<u32, Option<(Extreme, Rc<[u32]>)>>,
     /// How many more boxes may be enclosed.
     pub(super) work_left: u64,
     pub(super) least_overlap: f64,
@@ -242,7 +243,7 @@ impl<'a> Subdivision<'a> {
     pub(super) fn divide(&mut self, part: &Part) {
         let beam = self.beam(part.beam);
         let elongation = beam.elongation(part.stretch);
-        let is_smallest = beam.area.width.max(beam.area.height) <= SMALLEST;
+        let is_smallest = beam.area.side() <= SMALLEST;
         if elongation > LONG && elongation.is_finite() {
             let count = (elongation / LONG).ceil().min(SLICES as f64) as usize;
             self.examine(part.beam..part.beam + 1, (part.stretch, count), part.kernels);
@@ -323,11 +324,10 @@ impl<'a> Subdivision<'a> {
         let Some(normals) = &mut self.normals else { return };
         let Workspace { asked, .. } = &mut *self.workspace;
         let mut asked = std::mem::take(asked);
+        let function = |(kernels, _): &(u32, Asked)| self.kernels[*kernels as usize].identity();
         let met = &mut self.memory.met;
-        met.sort_by_key(|(kernels, _)| self.kernels[*kernels as usize].identity());
-        let is_same =
-            |a: u32, b: u32| self.kernels[a as usize].identity() == self.kernels[b as usize].identity();
-        for met in met.chunk_by(|a, b| is_same(a.0, b.0)) {
+        met.sort_by_key(function);
+        for met in met.chunk_by(|a, b| function(a) == function(b)) {
             let kernels = &self.kernels[met[0].0 as usize];
             asked.clear();
             asked.extend(met.iter().map(|(_, asked)| *asked));
