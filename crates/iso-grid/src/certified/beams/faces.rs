@@ -1,16 +1,15 @@
 //! The functions of which a body is made by minima and maxima, in any order, each smooth by itself. On a part most of them are of one sign.
 
-use std::rc::Rc;
 use std::sync::Arc;
 
-use iso_expr::{Decoration, Extreme, Interval};
+use iso_expr::{Decoration, Interval};
 
 use super::bend::{Bend, Course};
 use super::bows::{Bow, ways};
 use super::form::{Form, Gradient};
 use super::made::{MOST, Made, deciding};
 use super::pixels::Pixel;
-use super::subdivision::{Part, Subdivision};
+use super::subdivision::{Faces, Part, Subdivision};
 use crate::certified::kernels::bounds_between;
 use crate::{Kernel, Ray, Span};
 
@@ -104,7 +103,7 @@ impl Subdivision<'_> {
     }
 
     /// The numbers of the kernels of which those of a number are the least or the greatest, if they are.
-    pub(super) fn faces_of(&mut self, kernels: u32) -> Option<(Extreme, Rc<[u32]>)> {
+    pub(super) fn faces_of(&mut self, kernels: u32) -> Option<Faces> {
         if !self.kernels(kernels).may_be_shortened() {
             return None;
         }

@@ -50,6 +50,9 @@ pub(super) struct Part {
     pub(super) is_inside: bool,
 }
 
+/// The numbers of kernels, and whether others are the least or the greatest of them.
+pub(super) type Faces = (Extreme, Rc<[u32]>);
+
 /// Working memory for the subdivision of a tile.
 #[derive(Debug, Default)]
 pub(crate) struct Memory {
@@ -84,8 +87,8 @@ pub(in crate::certified) struct Subdivision<'a> {
     pub(super) memory: Memory,
     /// Kernels by number. The first hold everywhere.
     pub(super) kernels: Vec<Arc<Kernels>>,
-    /// The kernels of which each of some kernels is the least or the greatest, by number; `None` where it is neither.
-    pub(super) faces: FxHashMap<u32, Option<(Extreme, Rc<[u32]>)>>,
+    /// Those of which each of some kernels is the least or the greatest, by number; `None` where it is neither.
+    pub(super) faces: FxHashMap<u32, Option<Faces>>,
     /// How many more boxes may be enclosed.
     pub(super) work_left: u64,
     pub(super) least_overlap: f64,
