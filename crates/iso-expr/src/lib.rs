@@ -24,4 +24,4 @@ pub use interval::{Decorated, Decoration, Extension, Interval};
 pub use language::{Ast, Formula, FormulaError, FormulaErrorKind, decode, limits};
 pub use operation::{Chain, Operation, Value, by_squaring};
 pub use pieces::Pieces;
-pub use program::{Argument, Axis, Extreme, Node, NodeId, Program};
+pub use program::{Argument, Axis, Composition, Extreme, Node, NodeId, Program};

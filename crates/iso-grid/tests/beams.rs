@@ -8,7 +8,7 @@ use iso_expr::{Ast, Interpreter, Program};
 use iso_grid::{Certified, Hit, Outcome, Raster, Ray, Region, Span, Surface, Tile, Tracer, Workspace};
 
 /// Formulas, half sides of their regions, and what they are tried for.
-const SCENES: [(&str, f64, &str); 48] = [
+const SCENES: [(&str, f64, &str); 52] = [
     ("(x^2+y^2-1)^2 + 4z^2 + 0.5x - 0.2", 1.5, "a classic"),
     ("x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8", 2.6, "parts in front of each other"),
     ("sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)", 5.0, "cut by the region's faces"),
@@ -58,22 +58,25 @@ const SCENES: [(&str, f64, &str); 48] = [
         1.6,
         "a box on a box",
     ),
-    (
-        "min(max(abs(x), abs(y), abs(z)) - 0.5, max(x^2+y^2-0.2, z-0.5, 0.5-z))",
-        1.3,
-        "a disk without thickness on a box",
-    ),
     ("max(x^2+y^2-0.5, z-0.2x, 0.2x-z)", 1.3, "a disk without thickness"),
     ("min(max(0.1-x^2, y^2+z^2-0.5), max(0.1-y^2, x^2+z^2-0.5))", 1.3, "bodies with a cleft"),
     ("min(0.1-x^2-y^2, x^2+y^2+z^2-0.2, 0.3-x^2-(y-z)^2)", 1.2, "holes, and a ball in them"),
     ("max(min(-1, sqrt(0.3 - z)), x)", 1.0, "undefined where a part that decides nothing is"),
     ("min(max(1, y - 2, asin(z + 0.4)), x^2+y^2+z^2-0.7)", 1.0, "the same of a union"),
+    ("(x-clamp(x,-0.5,0.7))^2+y^2+(z+x/3)^2-0.15", 1.3, "a limb, with joints"),
+    (ROUNDED, 1.3, "a distance from a box, less a little"),
+    ("abs(x)+abs(y)+abs(z)-0.9", 1.2, "an octahedron as a sum"),
+    ("abs(abs(x)-0.5)+y^2+max(z,2z)^2-0.2", 1.3, "kinks within kinks"),
+    ("max(x^2+y^2+z^2-1, 0.05-abs(y+abs(z)/3))", 1.3, "a bent cut"),
     (SHARP, 1.3, "a sharp blend, whose exponentials underflow not far from the surface"),
 ];
 
 /// Of six balls and a slab, few count anywhere.
 const BALLS: &str = "ball(a,b,c) := (x-a)^2+(y-b)^2+(z-c)^2 - 0.3; \
     max(min(min(min(ball(1,0,0), ball(-1,0,0)), min(ball(0,1,0), ball(0,-1,0))), min(ball(0,0,1), ball(0,0,-1))), abs(z+0.1) - 1)";
+/// Inside as well as outside.
+const ROUNDED: &str = "a := abs(x)-0.5; b := abs(y)-0.6; c := abs(z)-0.4; \
+    sqrt(max(a,0)^2+max(b,0)^2+max(c,0)^2) + min(max(a,b,c),0) - 0.2";
 /// Two balls.
 const SHARP: &str = "a := sqrt(x^2+y^2+z^2) - 0.5; b := sqrt((x-0.7)^2+y^2+z^2) - 0.4; \
     -ln(exp(-3000a) + exp(-3000b))/3000";
@@ -236,17 +239,23 @@ fn every_ray_of_a_tile_ends_as_it_does_alone() {
 /// zero. A tile tells the faces apart, each of which changes sign.
 #[test]
 fn tiles_prove_no_less_where_faces_coincide() {
-    let tracer = certified(&read("min(x^2+y^2+z^2-0.5, x^2/2+y^2/2+z^2/2-0.25, z+0.2)"), 1.2);
-    for view in views(1.2, 45, 37) {
-        let alone = alone(&tracer, &view.rays);
-        for outcomes in together(&tracer, &view) {
-            for (number, (a, b)) in outcomes.into_iter().zip(&alone).enumerate() {
-                let is_no_less = is_same(a, *b) || matches!((a, b), (Outcome::Hit(_), Outcome::Touch(_)));
-                assert!(
-                    is_no_less && agree(a, *b) && is_narrow(a),
-                    "{}, ray {number}: {a:?}, {b:?}",
-                    view.name
-                );
+    for formula in [
+        "min(x^2+y^2+z^2-0.5, x^2/2+y^2/2+z^2/2-0.25, z+0.2)",
+        // A disk without thickness on a box.
+        "min(max(abs(x), abs(y), abs(z)) - 0.5, max(x^2+y^2-0.2, z-0.5, 0.5-z))",
+    ] {
+        let tracer = certified(&read(formula), 1.3);
+        for view in views(1.3, 45, 37) {
+            let alone = alone(&tracer, &view.rays);
+            for outcomes in together(&tracer, &view) {
+                for (number, (a, b)) in outcomes.into_iter().zip(&alone).enumerate() {
+                    let is_no_less = is_same(a, *b) || matches!((a, b), (Outcome::Hit(_), Outcome::Touch(_)));
+                    assert!(
+                        is_no_less && agree(a, *b) && is_narrow(a),
+                        "{formula}, {}, ray {number}: {a:?}, {b:?}",
+                        view.name
+                    );
+                }
             }
         }
     }

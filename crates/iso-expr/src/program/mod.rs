@@ -1,10 +1,10 @@
 //! Programs: hash-consed, straight-line descriptions of what is to be evaluated.
 
 mod composed;
+mod composition;
 mod cubes;
 mod display;
 mod exact;
-mod extreme;
 mod forms;
 mod gradient;
 mod powers;
@@ -19,7 +19,7 @@ use std::hash::{Hash, Hasher};
 
 use rustc_hash::FxHashMap;
 
-pub use extreme::Extreme;
+pub use composition::{Composition, Extreme};
 
 use crate::{Constant, Operation};
 

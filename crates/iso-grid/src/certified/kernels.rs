@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::{
-    BatchKernel, BoxKernel, CompileError, Decorated, Decoration, Extreme, Interval, Program, Scratch,
+    BatchKernel, BoxKernel, CompileError, Composition, Decorated, Decoration, Interval, Program, Scratch,
 };
 
 use super::formula::{Formula, Formulas, compiled};
@@ -62,11 +62,10 @@ impl Kernels {
         Some(Self { formula: formulas.one_of(program, &self.formula), domain })
     }
 
-    /// Kernels of those of which F is the least or the greatest wherever these hold, if it is a minimum or a maximum there.
-    pub(super) fn faces(&self, formulas: &Formulas) -> Option<(Extreme, Vec<Self>)> {
-        let (extreme, faces) = self.formula.faces(formulas)?;
-        let kernels = |face: &Arc<Formula>| Self { formula: Arc::clone(face), domain: self.domain };
-        Some((*extreme, faces.iter().map(kernels).collect()))
+    /// Kernels of the functions that F is made of wherever these hold, if it has kinks there.
+    pub(super) fn composition(&self, formulas: &Formulas) -> Option<Composition<Self>> {
+        let composition = self.formula.composition(formulas)?.clone();
+        Some(composition.map(|formula| Self { formula, domain: self.domain }))
     }
 
     /// Kernels of the same function that hold on a box, or along some rays in it that ask for nothing beyond.

@@ -3,7 +3,7 @@
 use std::sync::{Arc, RwLock};
 
 use glam::DVec3;
-use iso_expr::{Extreme, Interval};
+use iso_expr::{Composition, Interval};
 use rustc_hash::FxHashMap;
 
 use super::formula::Formulas;
@@ -81,10 +81,9 @@ impl Places {
         if found.cover(&bounds_between(lo, hi)) { found } else { Arc::clone(&self.whole) }
     }
 
-    /// Kernels of those of which F is the least or the greatest wherever some kernels hold, if it is a minimum or a maximum there.
-    pub(super) fn faces(&self, kernels: &Kernels) -> Option<(Extreme, Vec<Arc<Kernels>>)> {
-        let (extreme, faces) = kernels.faces(&self.formulas)?;
-        Some((extreme, faces.into_iter().map(Arc::new).collect()))
+    /// Kernels of the functions that F is made of wherever some kernels hold, if it has kinks there.
+    pub(super) fn composition(&self, kernels: &Kernels) -> Option<Composition<Kernels>> {
+        kernels.composition(&self.formulas)
     }
 
     /// The smallest place that a box lies in.
@@ -177,7 +176,7 @@ mod tests {
             |places: &Places, x: f64| places.kernels(DVec3::new(x, 0.0, 0.0), DVec3::new(x + 0.1, 0.1, 0.1));
         assert!(at(&places, 1.1).are(&at(&elsewhere, 1.1)));
         assert!(!at(&places, 1.1).are(&at(&elsewhere, -1.1)));
-        let (_, faces) = places.faces(&places.whole).unwrap();
+        let faces = places.composition(&places.whole).unwrap();
         assert!(faces.iter().all(|face| !face.are(&places.whole)));
     }
 }

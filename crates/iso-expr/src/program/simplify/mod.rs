@@ -26,6 +26,27 @@ impl Program {
         program.pruned()
     }
 
+    /// The same, with the value of one operation replaced by what `replace` makes of its first two operands.
+    pub(super) fn simplified_with(
+        &self,
+        replaced: NodeId,
+        replace: impl Fn(&mut Simplifier<'_>, [NodeId; 2]) -> NodeId,
+    ) -> Self {
+        let (mut program, mut place) = (Self::new(), 0);
+        program.outputs = program.import_with(self, |program, node| {
+            let is_replaced = place == replaced.index();
+            place += 1;
+            match node {
+                Node::Apply(_, [a, b, _]) if is_replaced => replace(&mut Simplifier { program }, [a, b]),
+                Node::Apply(operation, operands) => {
+                    Simplifier { program }.apply(operation, &operands[..operation.arity()])
+                }
+                leaf => program.intern(leaf),
+            }
+        });
+        program.pruned()
+    }
+
     /// The product of two constants, as a constant where it is finite.
     pub(crate) fn product_of_constants(&mut self, a: NodeId, b: NodeId) -> NodeId {
         match folded(self, Operation::Multiply, &[a, b]) {
@@ -36,7 +57,7 @@ impl Program {
 }
 
 /// Adds operations to a program all of whose operations are simplified.
-struct Simplifier<'a> {
+pub(super) struct Simplifier<'a> {
     program: &'a mut Program,
 }
 
@@ -45,7 +66,7 @@ impl Simplifier<'_> {
     ///
     /// Rules call this again for what they build. That ends soon, whatever the program's size: every rule has fewer
     /// operations or signs on its right than on its left, or moves on towards an operation that no rule leads back from.
-    fn apply(&mut self, operation: Operation, operands: &[NodeId]) -> NodeId {
+    pub(super) fn apply(&mut self, operation: Operation, operands: &[NodeId]) -> NodeId {
         if let Some(constant) = folded(self.program, operation, operands) {
             return self.program.constant(constant);
         }

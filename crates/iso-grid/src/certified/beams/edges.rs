@@ -115,6 +115,11 @@ impl Signs<'_> {
         let (before, known) = (self.made.sign(&self.signs), self.signs);
         roots.iter().for_each(|root| self.signs[root.face] = -known[root.face]);
         let is_other = self.made.sign(&self.signs) != before;
+        // Where F is zero, one of those is that it may be.
+        let mut met = roots.iter().filter(|root| self.made.is_met(root.face));
+        let Some(first) = met.next() else {
+            return if is_other { Event::Unclear } else { Event::Nothing };
+        };
         if let [root] = roots {
             return if is_other { Event::Meeting(root.face, root.hit) } else { Event::Nothing };
         }
@@ -132,16 +137,16 @@ impl Signs<'_> {
             });
             signs == [before, -before]
         };
-        if let Some(root) = roots.iter().find(decides) {
+        if let Some(root) = met.clone().chain([first]).find(decides) {
             return Event::Meeting(root.face, root.hit);
         }
         let rises = |root: &Root| known[root.face] < 0.0;
-        let is_alike = |root: &Root| self.are_monotone[root.face] && rises(root) == rises(&roots[0]);
-        let is_simple = roots.iter().all(is_alike);
+        let is_alike = |root: &Root| self.are_monotone[root.face] && rises(root) == rises(first);
+        let is_simple = is_alike(first) && met.all(is_alike);
         let bracket = hull(roots);
         match (is_other, is_simple) {
             (true, true) if bracket.end - bracket.start <= self.tolerance => {
-                Event::Meeting(roots[0].face, Hit { bracket, ..roots[0].hit })
+                Event::Meeting(first.face, Hit { bracket, ..first.hit })
             }
             (true, _) => Event::Unclear,
             // What is made of functions that all rise or all fall does so too, and has the same sign at both ends.
@@ -387,6 +392,9 @@ fn meeting(
         let course = face.bend.at(a, b);
         if let Some(sign) = face.sign(&course, asked) {
             signs[number] = sign;
+            continue;
+        }
+        if !made.is_met(number) {
             continue;
         }
         let way = course.way_to_root(&face.bow);

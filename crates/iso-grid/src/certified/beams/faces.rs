@@ -1,8 +1,9 @@
 //! The functions of which a body is made by minima and maxima, in any order, each smooth by itself. On a part most of them are of one sign.
 
+use std::rc::Rc;
 use std::sync::Arc;
 
-use iso_expr::{Decoration, Interval};
+use iso_expr::{Composition, Decoration, Extreme, Interval};
 
 use super::bend::{Bend, Course};
 use super::bows::{Bow, ways};
@@ -71,7 +72,12 @@ impl Subdivision<'_> {
             return false;
         }
         let mut outlines = Vec::new();
-        match self.made_of_several(part, part.kernels, &mut outlines) {
+        let Some(faces) = self.faces_of(part.kernels) else { return false };
+        if matches!(*faces, Composition::Choice { .. }) && self.has_forms(part.kernels) {
+            // Those hold across kinks inside a function, and say as much.
+            return false;
+        }
+        match self.made_of_several(part, (part.kernels, &faces), &mut outlines) {
             Some(Made::Signed(_)) => true,
             Some(Made::Face(number)) => {
                 self.follow_face(part, &outlines[number]);
@@ -102,7 +108,7 @@ impl Subdivision<'_> {
         }
     }
 
-    /// The numbers of the kernels of which those of a number are the least or the greatest, if they are.
+    /// How the kernels of a number are made of others, if they have kinks.
     pub(super) fn faces_of(&mut self, kernels: u32) -> Option<Faces> {
         if !self.kernels(kernels).may_be_shortened() {
             return None;
@@ -110,20 +116,60 @@ impl Subdivision<'_> {
         if let Some(known) = self.faces.get(&kernels) {
             return known.clone();
         }
-        let found = self.certified.places.faces(self.kernels(kernels));
-        let found = found
-            .map(|(extreme, faces)| (extreme, faces.into_iter().map(|face| self.number_of(face)).collect()));
+        let found = self.certified.places.composition(self.kernels(kernels));
+        let found = found.map(|faces| Rc::new(faces.map(|face| self.number_of(Arc::new(face)))));
         self.faces.insert(kernels, found.clone());
         found
     }
 
-    /// What a minimum or a maximum comes to on a part, and the functions of which it is made there; `None` if it is neither, or where it may
-    /// be undefined.
-    fn made_of_several(&mut self, part: &Part, kernels: u32, outlines: &mut Vec<Outline>) -> Option<Made> {
-        let (extreme, numbers) = self.faces_of(kernels)?;
+    /// What a function with kinks comes to on a part, and the functions of which it is made there; `None` where it may be undefined.
+    fn made_of_several(
+        &mut self,
+        part: &Part,
+        (kernels, faces): (u32, &Composition<u32>),
+        outlines: &mut Vec<Outline>,
+    ) -> Option<Made> {
+        match faces {
+            Composition::Extreme(extreme, faces) => {
+                self.made_of_extreme(part, kernels, (*extreme, faces), outlines)
+            }
+            Composition::Choice { by, below, above } => {
+                self.made_of_sides(part, *by, [*below, *above], outlines)
+            }
+        }
+    }
+
+    /// What one of two functions comes to on a part, by the sign of a third one.
+    fn made_of_sides(
+        &mut self,
+        part: &Part,
+        by: u32,
+        [below, above]: [u32; 2],
+        outlines: &mut Vec<Outline>,
+    ) -> Option<Made> {
+        let by = match self.made(part, by, outlines)? {
+            Made::Signed(sign) => return self.made(part, if sign < 0.0 { below } else { above }, outlines),
+            Made::Face(by) => by,
+            Made::Of(..) | Made::Choice(..) => return None,
+        };
+        let sides = [self.made(part, below, outlines)?, self.made(part, above, outlines)?];
+        Some(match sides {
+            [Made::Signed(below), Made::Signed(above)] if below == above => Made::Signed(below),
+            sides => Made::Choice(by, Box::new(sides)),
+        })
+    }
+
+    /// What a minimum or a maximum comes to on a part.
+    fn made_of_extreme(
+        &mut self,
+        part: &Part,
+        kernels: u32,
+        (extreme, numbers): (Extreme, &[u32]),
+        outlines: &mut Vec<Outline>,
+    ) -> Option<Made> {
         let before = outlines.len();
         let (mut parts, mut is_decided) = (Vec::new(), false);
-        for number in &*numbers {
+        for number in numbers {
             match self.made(part, *number, outlines)? {
                 Made::Signed(sign) => is_decided |= sign == deciding(extreme),
                 made => parts.push(made),
@@ -151,8 +197,8 @@ impl Subdivision<'_> {
         if let Some(known) = outlines.iter().position(is_same) {
             return Some(Made::Face(known));
         }
-        if self.faces_of(kernels).is_some() {
-            return self.made_of_several(part, kernels, outlines);
+        if let Some(faces) = self.faces_of(kernels) {
+            return self.made_of_several(part, (kernels, &faces), outlines);
         }
         let (t, center) = self.center(part);
         let bounds = self.beam(part.beam).bounds_in_space(part.form.reach);

@@ -16,6 +16,8 @@ pub(super) enum Made {
     Face(usize),
     /// It is zero where the least or the greatest of these is, and of the same sign elsewhere.
     Of(Extreme, Vec<Self>),
+    /// It is the second where the face of this number is negative, and the third where that is positive; where that is zero, all three are the same.
+    Choice(usize, Box<[Self; 2]>),
 }
 
 impl Made {
@@ -31,6 +33,21 @@ impl Made {
                     Extreme::Greatest => signs.fold(-1.0, f64::max),
                 }
             }
+            Self::Choice(by, sides) => match (of_faces[*by], sides.each_ref().map(|side| side.sign(of_faces))) {
+                (..0.0, [below, _]) => below,
+                (0.0, [below, above]) if below != above => 0.0,
+                (_, [_, above]) => above,
+            },
+        }
+    }
+
+    /// Notes the faces that it may be.
+    fn note_faces(&self, are_faces: &mut [bool; MOST]) {
+        match self {
+            Self::Signed(_) => {}
+            Self::Face(number) => are_faces[*number] = true,
+            Self::Of(_, parts) => parts.iter().for_each(|part| part.note_faces(are_faces)),
+            Self::Choice(_, sides) => sides.iter().for_each(|side| side.note_faces(are_faces)),
         }
     }
 }
@@ -40,12 +57,15 @@ pub(super) struct Combinations {
     of: [f64; COMBINATIONS],
     /// Whether F is the least or the greatest of each face and what else there may be.
     direct: [Option<Extreme>; MOST],
+    /// Whether F may be zero where each face is, and not only made otherwise before and behind it.
+    are_met: [bool; MOST],
 }
 
 impl Combinations {
     /// Those of what is made of so many faces.
     pub(super) fn new(made: &Made, faces: usize) -> Self {
-        let mut found = Self { of: [0.0; COMBINATIONS], direct: [None; MOST] };
+        let mut found = Self { of: [0.0; COMBINATIONS], direct: [None; MOST], are_met: [false; MOST] };
+        made.note_faces(&mut found.are_met);
         for number in 0..3_usize.pow(faces as u32) {
             let mut rest = number;
             let mut signs = [0.0; MOST];
@@ -69,6 +89,11 @@ impl Combinations {
     #[inline]
     pub(super) fn sign(&self, of_faces: &[f64; MOST]) -> f64 {
         self.of[place_of(of_faces)]
+    }
+
+    /// Whether F may be zero where a face is.
+    pub(super) fn is_met(&self, face: usize) -> bool {
+        self.are_met[face]
     }
 
     /// Whether F is the least or the greatest of a face and what else there may be.

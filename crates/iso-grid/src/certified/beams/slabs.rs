@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use glam::DVec3;
-use iso_expr::Interval;
+use iso_expr::{Composition, Interval};
 
 use super::beam::Beam;
 use super::form::{Ball, Form, Gradient};
@@ -121,10 +121,9 @@ impl Subdivision<'_> {
     /// Keeps those slabs that may hold roots. All lie where the same kernels hold.
     fn keep_open(&mut self, mut slabs: &mut [Slab]) {
         let Some(&Slab { beam, kernels, .. }) = slabs.first() else { return };
-        let (area, kernels) = (self.beam(beam).area, self.kernels(kernels));
+        let (area, has_forms) = (self.beam(beam).area, self.has_forms(kernels));
         let is_large = area.side() > VAGUE;
-        let has_forms = kernels.forms(self.forms()).is_some();
-        if kernels.may_be_shortened() || has_forms && is_large {
+        if self.kernels(kernels).may_be_shortened() || has_forms && is_large {
             // The gradient of a formula with branches takes much longer than its values, which often say enough. Of large sets
             // forms say less than enclosures.
             let count = self.drop_free(slabs);
@@ -153,8 +152,13 @@ impl Subdivision<'_> {
         let are_fit =
             self.beam(beam).area.side() >= *SIZES.start() && slabs.iter().all(|slab| slab.is_inside);
         let operations = self.kernels(kernels).operations(Kernel::Values);
-        let are_short = |faces: usize| operations <= SHORT * faces as u64;
-        are_fit && self.faces_of(kernels).is_some_and(|(_, faces)| !has_forms || are_short(faces.len()))
+        let are_short = |faces: &[u32]| operations <= SHORT * faces.len() as u64;
+        are_fit
+            && match self.faces_of(kernels).as_deref() {
+                Some(Composition::Extreme(_, faces)) => !has_forms || are_short(faces),
+                Some(Composition::Choice { .. }) => !has_forms,
+                None => false,
+            }
     }
 
     /// Keeps slabs that may hold roots, as far as affine forms tell, which know how F depends on column, row and t.

@@ -4,7 +4,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use glam::DVec3;
-use iso_expr::{Decorated, Extreme};
+use iso_expr::{Composition, Decorated};
 use rustc_hash::FxHashMap;
 
 use super::beam::{Beam, count_in};
@@ -50,8 +50,8 @@ pub(super) struct Part {
     pub(super) is_inside: bool,
 }
 
-/// The numbers of kernels, and whether others are the least or the greatest of them.
-pub(super) type Faces = (Extreme, Rc<[u32]>);
+/// How a function is made of others: the numbers of their kernels.
+pub(super) type Faces = Rc<Composition<u32>>;
 
 /// Working memory for the subdivision of a tile.
 #[derive(Debug, Default)]
@@ -87,7 +87,7 @@ pub(in crate::certified) struct Subdivision<'a> {
     pub(super) memory: Memory,
     /// Kernels by number. The first hold everywhere.
     pub(super) kernels: Vec<Arc<Kernels>>,
-    /// Those of which each of some kernels is the least or the greatest, by number; `None` where it is neither.
+    /// How each of some kernels is made of others, by number; `None` where it has no kinks.
     pub(super) faces: FxHashMap<u32, Option<Faces>>,
     /// How many more boxes may be enclosed.
     pub(super) work_left: u64,
@@ -199,6 +199,11 @@ impl<'a> Subdivision<'a> {
     /// The kernel of the forms that tell the tile's rays.
     pub(super) fn forms(&self) -> Kernel {
         if self.tile.direction().is_some() { Kernel::ParallelForms } else { Kernel::Forms }
+    }
+
+    /// Whether forms are asked for by kernels of a number.
+    pub(super) fn has_forms(&self, kernels: u32) -> bool {
+        self.kernels(kernels).forms(self.forms()).is_some()
     }
 
     /// The column and the row of a ray of the tile.

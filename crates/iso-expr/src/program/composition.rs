@@ -1,0 +1,195 @@
+//! Programs whose value is always that of one of several others.
+
+use super::{Node, NodeId, Program};
+use crate::Operation;
+
+/// Which of several values one is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extreme {
+    /// The least, as at the surface of a union.
+    Least,
+    /// The greatest, as at the surface of an intersection.
+    Greatest,
+}
+
+/// How a continuous function is made of others that have fewer kinks.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Composition<F> {
+    /// The least or the greatest of two or more.
+    Extreme(Extreme, Vec<F>),
+    /// One function where a third one is negative, and another where that is positive. Where that is zero, both are the same.
+    Choice {
+        /// The function that decides.
+        by: F,
+        /// What is taken where it is negative.
+        below: F,
+        /// What is taken where it is positive.
+        above: F,
+    },
+}
+
+impl<F> Composition<F> {
+    /// The same of what `make` makes of the functions.
+    pub fn map<G>(self, mut make: impl FnMut(F) -> G) -> Composition<G> {
+        match self {
+            Self::Extreme(extreme, all) => Composition::Extreme(extreme, all.into_iter().map(make).collect()),
+            Self::Choice { by, below, above } => {
+                Composition::Choice { by: make(by), below: make(below), above: make(above) }
+            }
+        }
+    }
+
+    /// The functions.
+    pub fn iter(&self) -> impl Iterator<Item = &F> {
+        let (several, three) = match self {
+            Self::Extreme(_, all) => (&all[..], None),
+            Self::Choice { by, below, above } => (&[][..], Some([by, below, above])),
+        };
+        several.iter().chain(three.into_iter().flatten())
+    }
+}
+
+impl Program {
+    /// How this program's only output is made of others: as a minimum or a maximum, or the negative of one, or else by the minimum, the maximum or
+    /// the absolute value inside it that is computed first. `None` where there is none.
+    pub fn composition(&self) -> Option<Composition<Self>> {
+        let [output] = self.outputs[..] else { return None };
+        self.extreme_of(output).or_else(|| self.choice())
+    }
+
+    /// The least or the greatest of two or more. The negative of a minimum is the maximum of the negatives.
+    fn extreme_of(&self, output: NodeId) -> Option<Composition<Self>> {
+        let whole = self.without_negations(Signed { id: output, is_negative: false });
+        let (extreme, _) = self.as_extreme(whole)?;
+        let (mut open, mut operands) = (vec![whole], Vec::new());
+        while let Some(signed) = open.pop() {
+            match self.as_extreme(signed) {
+                Some((found, [a, b])) if found == extreme => open.extend([b, a]),
+                _ if operands.contains(&signed) => {}
+                _ => operands.push(signed),
+            }
+        }
+        let alone = |Signed { id, is_negative }| {
+            let mut program = self.clone();
+            let output = if is_negative { program.apply(Operation::Negate, &[id]) } else { id };
+            program.outputs = vec![output];
+            program.pruned()
+        };
+        (operands.len() > 1)
+            .then(|| Composition::Extreme(extreme, operands.into_iter().map(alone).collect()))
+    }
+
+    /// What it comes to by the sign of what decides its first kink.
+    fn choice(&self) -> Option<Composition<Self>> {
+        use Operation::{Absolute, Maximum, Minimum};
+        let has_kink =
+            |(_, node): &(NodeId, &Node)| matches!(node, Node::Apply(Minimum | Maximum | Absolute, _));
+        let (kink, &Node::Apply(operation, _)) = self.iter().find(has_kink)? else { return None };
+        let of_kink = Self { outputs: vec![kink], ..self.clone() };
+        let by = of_kink.simplified_with(kink, |simplifier, [a, b]| match operation {
+            Absolute => a,
+            _ => simplifier.apply(Operation::Subtract, &[a, b]),
+        });
+        let [below, above] = [true, false].map(|is_below| {
+            self.simplified_with(kink, |simplifier, [a, b]| match operation {
+                Absolute if is_below => simplifier.apply(Operation::Negate, &[a]),
+                Maximum if is_below => b,
+                Minimum if !is_below => b,
+                _ => a,
+            })
+        });
+        Some(Composition::Choice { by, below, above })
+    }
+
+    /// What a value is the least or the greatest of, if it is.
+    fn as_extreme(&self, Signed { id, is_negative }: Signed) -> Option<(Extreme, [Signed; 2])> {
+        let (is_least, a, b) = match self.node(id) {
+            Node::Apply(Operation::Minimum, [a, b, _]) => (true, a, b),
+            Node::Apply(Operation::Maximum, [a, b, _]) => (false, a, b),
+            _ => return None,
+        };
+        let extreme = if is_least != is_negative { Extreme::Least } else { Extreme::Greatest };
+        Some((extreme, [a, b].map(|id| self.without_negations(Signed { id, is_negative }))))
+    }
+
+    /// The same value as the positive or the negative of one that is no negative itself.
+    fn without_negations(&self, Signed { mut id, mut is_negative }: Signed) -> Signed {
+        while let Node::Apply(Operation::Negate, [operand, ..]) = self.node(id) {
+            (id, is_negative) = (operand, !is_negative);
+        }
+        Signed { id, is_negative }
+    }
+}
+
+/// A value, or its negative.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Signed {
+    id: NodeId,
+    is_negative: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Ast;
+
+    fn extreme_in(text: &str) -> (Extreme, Vec<Program>) {
+        let Some(Composition::Extreme(extreme, operands)) = read(text).composition() else {
+            panic!("neither a minimum nor a maximum")
+        };
+        (extreme, operands)
+    }
+
+    fn read(text: &str) -> Program {
+        Ast::parse(text).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified()
+    }
+
+    #[test]
+    fn nested_maxima_are_one_and_so_are_nested_minima() {
+        for (name, expected) in [("max", Extreme::Greatest), ("min", Extreme::Least)] {
+            let text = format!("{name}(x^2 - 1, {name}(y, z + 3), y)");
+            let (extreme, operands) = extreme_in(&text);
+            assert_eq!((extreme, operands.len()), (expected, 3));
+            for text in ["x^2 - 1", "y", "z + 3"] {
+                assert!(operands.contains(&read(text)), "{text} is not one of {operands:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_negative_of_a_minimum_is_a_maximum_of_negatives() {
+        let (extreme, operands) = extreme_in("-min(x, -max(y, -(z + 3)))");
+        assert_eq!((extreme, operands.len()), (Extreme::Greatest, 3));
+        for text in ["-x", "y", "-(z + 3)"] {
+            assert!(operands.contains(&read(text)), "{text} is not one of {operands:?}");
+        }
+        // Beside each other, both signs are two values, and twice the same one is one.
+        let (extreme, operands) = extreme_in("max(x, -(-y), y, -x)");
+        assert_eq!((extreme, operands.len()), (Extreme::Greatest, 3));
+        let (extreme, operands) = extreme_in("-max(x, min(y, z))");
+        assert_eq!((extreme, operands.len()), (Extreme::Least, 2));
+        assert!(operands.contains(&read("-min(y, z)")));
+    }
+
+    #[test]
+    fn others_stay_whole() {
+        assert!(read("1 + x").composition().is_none());
+        let (extreme, operands) = extreme_in("min(x, max(y, z))");
+        assert_eq!((extreme, operands.len()), (Extreme::Least, 2));
+        assert!(operands.contains(&read("max(y, z)")));
+    }
+
+    /// Those computed first, which have no kinks of their own.
+    #[test]
+    fn kinks_inside_are_choices() {
+        for (text, expected) in [
+            ("1 + max(x, y)", ["x - y", "1 + y", "1 + x"]),
+            ("1 + min(x, y)", ["x - y", "1 + x", "1 + y"]),
+            ("1 + abs(x)", ["x", "1 + -x", "1 + x"]),
+            ("(x - min(max(y, 0), 1))^2", ["y", "x^2", "(x - min(y, 1))^2"]),
+        ] {
+            let [by, below, above] = expected.map(read);
+            assert_eq!(read(text).composition(), Some(Composition::Choice { by, below, above }), "{text}");
+        }
+    }
+}
