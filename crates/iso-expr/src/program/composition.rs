@@ -75,8 +75,7 @@ impl Program {
             program.outputs = vec![output];
             program.pruned()
         };
-        (operands.len() > 1)
-            .then(|| Composition::Extreme(extreme, operands.into_iter().map(alone).collect()))
+        (operands.len() > 1).then(|| Composition::Extreme(extreme, operands.into_iter().map(alone).collect()))
     }
 
     /// What it comes to by the sign of what decides its first kink.

@@ -73,10 +73,14 @@ impl Kernels {
         Self { formula: Arc::clone(&self.formula), domain }
     }
 
-    /// Whether these are others of the same function on the same box. Threads may find out the same.
+    /// Whether these are others of the same function. Threads may find out the same.
+    pub(super) fn are_alike(&self, others: &Self) -> bool {
+        Arc::ptr_eq(&self.formula, &others.formula) || self.program() == others.program()
+    }
+
+    /// Whether these are others of the same function on the same box.
     pub(super) fn are(&self, others: &Self) -> bool {
-        let is_same = || Arc::ptr_eq(&self.formula, &others.formula) || self.program() == others.program();
-        self.domain == others.domain && is_same()
+        self.domain == others.domain && self.are_alike(others)
     }
 
     /// The same number for all kernels of one function, as far as it is known to be one.

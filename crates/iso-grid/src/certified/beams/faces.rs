@@ -10,7 +10,7 @@ use super::bows::{Bow, ways};
 use super::form::{Form, Gradient};
 use super::made::{MOST, Made, deciding};
 use super::pixels::Pixel;
-use super::subdivision::{Faces, Part, Subdivision};
+use super::subdivision::{Faces, Known, Part, Subdivision};
 use crate::certified::kernels::bounds_between;
 use crate::{Kernel, Ray, Span};
 
@@ -110,15 +110,13 @@ impl Subdivision<'_> {
 
     /// How the kernels of a number are made of others, if they have kinks.
     pub(super) fn faces_of(&mut self, kernels: u32) -> Option<Faces> {
-        if !self.kernels(kernels).may_be_shortened() {
-            return None;
-        }
-        if let Some(known) = self.faces.get(&kernels) {
+        if let Known::Everywhere(known) | Known::OnSlab(known) = &self.faces[kernels as usize] {
             return known.clone();
         }
-        let found = self.certified.places.composition(self.kernels(kernels));
+        let asked = self.kernels(kernels);
+        let found = asked.may_be_shortened().then(|| self.certified.places.composition(asked)).flatten();
         let found = found.map(|faces| Rc::new(faces.map(|face| self.number_of(Arc::new(face)))));
-        self.faces.insert(kernels, found.clone());
+        self.faces[kernels as usize] = Known::Everywhere(found.clone());
         found
     }
 
@@ -193,7 +191,7 @@ impl Subdivision<'_> {
     /// What a function of which F is made comes to on a part. `None` as well where too many are open.
     fn made(&mut self, part: &Part, kernels: u32, outlines: &mut Vec<Outline>) -> Option<Made> {
         // Bodies that touch have faces in common.
-        let is_same = |outline: &Outline| self.kernels(outline.kernels).are(self.kernels(kernels));
+        let is_same = |outline: &Outline| self.kernels(outline.kernels).are_alike(self.kernels(kernels));
         if let Some(known) = outlines.iter().position(is_same) {
             return Some(Made::Face(known));
         }

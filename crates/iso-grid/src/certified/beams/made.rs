@@ -33,11 +33,13 @@ impl Made {
                     Extreme::Greatest => signs.fold(-1.0, f64::max),
                 }
             }
-            Self::Choice(by, sides) => match (of_faces[*by], sides.each_ref().map(|side| side.sign(of_faces))) {
-                (..0.0, [below, _]) => below,
-                (0.0, [below, above]) if below != above => 0.0,
-                (_, [_, above]) => above,
-            },
+            Self::Choice(by, sides) => {
+                match (of_faces[*by], sides.each_ref().map(|side| side.sign(of_faces))) {
+                    (..0.0, [below, _]) => below,
+                    (0.0, [below, above]) if below != above => 0.0,
+                    (_, [_, above]) => above,
+                }
+            }
         }
     }
 

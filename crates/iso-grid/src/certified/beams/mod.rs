@@ -25,6 +25,7 @@ mod form;
 mod grazing;
 mod made;
 mod monotone;
+mod narrowing;
 mod pixels;
 mod rounding;
 mod slabs;

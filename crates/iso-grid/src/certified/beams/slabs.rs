@@ -29,17 +29,17 @@ const SHORT: u64 = 8;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slab {
     /// The beam's number.
-    beam: u32,
+    pub(super) beam: u32,
     /// The number of kernels that hold on the box.
-    kernels: u32,
-    stretch: Span,
+    pub(super) kernels: u32,
+    pub(super) stretch: Span,
     /// The stretch and a little more at both ends.
-    reach: Span,
-    lo: DVec3,
-    hi: DVec3,
+    pub(super) reach: Span,
+    pub(super) lo: DVec3,
+    pub(super) hi: DVec3,
     /// The middle of `reach`, and a point of the box that is in the middle of the beam there where that is in the region.
-    middle: (f64, DVec3),
-    is_inside: bool,
+    pub(super) middle: (f64, DVec3),
+    pub(super) is_inside: bool,
 }
 
 impl Slab {
@@ -93,12 +93,15 @@ impl Subdivision<'_> {
                 slabs.extend(Slab::new((number, beam), stretch, self.least_overlap, &self.certified.region));
             }
         }
-        if self.certified.places.are_asked() {
+        let are_asked = self.certified.places.are_asked();
+        if are_asked {
             for slab in &mut slabs {
                 slab.kernels = self.kernels_on(slab.lo, slab.hi, kernels);
             }
         }
-        for slabs in slabs.chunk_by_mut(|a, b| a.kernels == b.kernels) {
+        let are_alike =
+            |a: &Slab, b: &Slab| a.kernels == b.kernels && (!are_asked || a.is_inside == b.is_inside);
+        for slabs in slabs.chunk_by_mut(are_alike) {
             self.keep_open(slabs);
         }
         self.memory.slabs = slabs;
@@ -108,7 +111,7 @@ impl Subdivision<'_> {
     fn kernels_on(&mut self, lo: DVec3, hi: DVec3, around: u32) -> u32 {
         let kernels = self.kernels(around);
         let is_covered = kernels.cover(&bounds_between(lo, hi));
-        if is_covered && !kernels.may_be_shortened() {
+        if is_covered && (!kernels.may_be_shortened() || self.is_narrowed(around)) {
             return around;
         }
         let found = self.certified.places.kernels(lo, hi);
@@ -121,6 +124,9 @@ impl Subdivision<'_> {
     /// Keeps those slabs that may hold roots. All lie where the same kernels hold.
     fn keep_open(&mut self, mut slabs: &mut [Slab]) {
         let Some(&Slab { beam, kernels, .. }) = slabs.first() else { return };
+        if self.are_left_to_faces(slabs) {
+            return self.keep_by_faces(slabs);
+        }
         let (area, has_forms) = (self.beam(beam).area, self.has_forms(kernels));
         let is_large = area.side() > VAGUE;
         if self.kernels(kernels).may_be_shortened() || has_forms && is_large {
@@ -129,16 +135,7 @@ impl Subdivision<'_> {
             let count = self.drop_free(slabs);
             slabs = &mut slabs[..count];
         }
-        if self.are_left_to_faces(slabs, has_forms) {
-            let part = |&Slab { beam, kernels, stretch, reach, is_inside, .. }: &Slab| Part {
-                beam,
-                kernels,
-                stretch,
-                form: Form::unknown(reach),
-                is_inside,
-            };
-            self.memory.ahead.extend(slabs.iter().map(part));
-        } else if has_forms {
+        if has_forms {
             self.keep_by_forms(slabs);
         } else {
             self.keep_by_gradients(slabs);
@@ -147,18 +144,22 @@ impl Subdivision<'_> {
 
     /// Whether nothing is asked of F itself on slabs where it is made of faces, as those say more. Forms are asked for where faces are
     /// long.
-    fn are_left_to_faces(&mut self, slabs: &[Slab], has_forms: bool) -> bool {
+    fn are_left_to_faces(&mut self, slabs: &[Slab]) -> bool {
         let Some(&Slab { beam, kernels, .. }) = slabs.first() else { return false };
         let are_fit =
             self.beam(beam).area.side() >= *SIZES.start() && slabs.iter().all(|slab| slab.is_inside);
+        if !are_fit {
+            return false;
+        }
+        let has_forms = self.has_forms(kernels);
         let operations = self.kernels(kernels).operations(Kernel::Values);
-        let are_short = |faces: &[u32]| operations <= SHORT * faces.len() as u64;
-        are_fit
-            && match self.faces_of(kernels).as_deref() {
-                Some(Composition::Extreme(_, faces)) => !has_forms || are_short(faces),
-                Some(Composition::Choice { .. }) => !has_forms,
-                None => false,
-            }
+        // What was narrowed before has fewer operations than these.
+        let is_narrowed = self.is_narrowed(kernels);
+        let are_short = |faces: &[u32]| is_narrowed || operations <= SHORT * faces.len() as u64;
+        self.faces_of(kernels).is_some_and(|faces| match &*faces {
+            Composition::Extreme(_, faces) => !has_forms || are_short(faces),
+            Composition::Choice { .. } => !has_forms,
+        })
     }
 
     /// Keeps slabs that may hold roots, as far as affine forms tell, which know how F depends on column, row and t.
@@ -267,7 +268,7 @@ impl Subdivision<'_> {
     }
 
     /// Moves the slabs over which the enclosure of F does not exclude zero to the front, and counts them.
-    fn drop_free(&mut self, slabs: &mut [Slab]) -> usize {
+    pub(super) fn drop_free(&mut self, slabs: &mut [Slab]) -> usize {
         let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
         let kernels = &self.kernels[slabs[0].kernels as usize];
         boxes.replace(slabs.iter().map(|slab| (slab.lo, slab.hi)));

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use iso_expr::{Composition, Decorated};
-use rustc_hash::FxHashMap;
 
 use super::beam::{Beam, count_in};
 use super::bundle::Bundle;
@@ -53,6 +52,17 @@ pub(super) struct Part {
 /// How a function is made of others: the numbers of their kernels.
 pub(super) type Faces = Rc<Composition<u32>>;
 
+/// What is known of how a function is made of others; `None` where it has no kinks.
+#[derive(Clone)]
+pub(super) enum Known {
+    /// It was not asked for.
+    Nothing,
+    /// How it is everywhere.
+    Everywhere(Option<Faces>),
+    /// How it is on a slab, where places tell no more.
+    OnSlab(Option<Faces>),
+}
+
 /// Working memory for the subdivision of a tile.
 #[derive(Debug, Default)]
 pub(crate) struct Memory {
@@ -87,8 +97,8 @@ pub(in crate::certified) struct Subdivision<'a> {
     pub(super) memory: Memory,
     /// Kernels by number. The first hold everywhere.
     pub(super) kernels: Vec<Arc<Kernels>>,
-    /// How each of some kernels is made of others, by number; `None` where it has no kinks.
-    pub(super) faces: FxHashMap<u32, Option<Faces>>,
+    /// What is known of how each of them is made of others.
+    pub(super) faces: Vec<Known>,
     /// How many more boxes may be enclosed.
     pub(super) work_left: u64,
     pub(super) least_overlap: f64,
@@ -139,7 +149,7 @@ impl<'a> Subdivision<'a> {
             normals,
             memory,
             kernels,
-            faces: FxHashMap::default(),
+            faces: vec![Known::Nothing],
             work_left,
             least_overlap: 0.0,
         })
@@ -273,6 +283,7 @@ impl<'a> Subdivision<'a> {
     /// Gives kernels a number.
     pub(super) fn number_of(&mut self, kernels: Arc<Kernels>) -> u32 {
         self.kernels.push(kernels);
+        self.faces.push(Known::Nothing);
         self.kernels.len() as u32 - 1
     }
 
