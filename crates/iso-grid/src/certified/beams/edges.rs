@@ -483,6 +483,24 @@ mod tests {
         assert_eq!(passed(&both, [1.0, -1.0, 1.0, 0.0], &roots), Event::Nothing);
     }
 
+    /// At the joint of a limb, where face 0 decides which of two others is that of the body.
+    #[test]
+    fn a_ray_meets_one_of_two_sides_and_never_what_decides() {
+        let limb = Made::Choice(0, Box::new([Made::Face(1), Made::Face(2)]));
+        let signs = [-1.0, 1.0, 1.0, 0.0];
+        let [by, below, above] = [root(0, 1.0, 1.2), root(1, 1.1, 1.3), root(2, 1.15, 1.25)];
+        assert_eq!(passed(&limb, signs, &[by]), Event::Nothing);
+        assert_eq!(passed(&limb, signs, &[below]), Event::Meeting(1, below.hit));
+        assert_eq!(passed(&limb, signs, &[above]), Event::Nothing);
+        // Where it cannot be told which comes first, the body is met once.
+        let Event::Meeting(1, hit) = passed(&limb, signs, &[by, below, above]) else { panic!("no meeting") };
+        assert_eq!(hit.bracket, Span { start: 1.0, end: 1.3 });
+        // One side rises again beyond: not met.
+        assert_eq!(passed(&limb, [-1.0, 1.0, -1.0, 0.0], &[above]), Event::Nothing);
+        // The sides change their signs in opposite ways, and what is between them is not known.
+        assert_eq!(passed(&limb, [-1.0, 1.0, -1.0, 0.0], &[by, below, above]), Event::Contact);
+    }
+
     /// The middle one of three falls to zero with two of them, and the third rises: in between it may have been zero before.
     #[test]
     fn what_several_faces_decide_together_is_unclear() {

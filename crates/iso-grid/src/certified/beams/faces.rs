@@ -1,4 +1,4 @@
-//! The functions of which a body is made by minima and maxima, in any order, each smooth by itself. On a part most of them are of one sign.
+//! The functions of which a body is made by minima, maxima and choices, in any order, each smooth by itself. On a part most of them are of one sign.
 
 use std::rc::Rc;
 use std::sync::Arc;

@@ -122,6 +122,25 @@ pub(super) fn deciding(extreme: Extreme) -> f64 {
 mod tests {
     use super::*;
 
+    /// A limb of a union: min(by < 0 ? a : b, c).
+    #[test]
+    fn choices_are_known_where_both_sides_are_the_same_or_the_side_is_known() {
+        let limb = Made::Choice(0, Box::new([Made::Face(1), Made::Face(2)]));
+        let made = Made::Of(Extreme::Least, vec![limb, Made::Face(3)]);
+        let found = Combinations::new(&made, 4);
+        for a in [-1.0, 0.0, 1.0] {
+            for b in [-1.0, 0.0, 1.0] {
+                for c in [-1.0, 0.0, 1.0] {
+                    assert_eq!(found.sign(&[-1.0, a, b, c]), f64::min(a, c));
+                    assert_eq!(found.sign(&[1.0, a, b, c]), f64::min(b, c));
+                    let either = if a == b { a } else { 0.0 };
+                    assert_eq!(found.sign(&[0.0, a, b, c]), f64::min(either, c));
+                }
+            }
+        }
+        assert_eq!([0, 1, 2, 3].map(|face| found.is_met(face)), [false, true, true, true]);
+    }
+
     /// A corner is cut off a union: max(min(a, b, 1), c).
     #[test]
     fn combinations_are_those_of_minima_and_maxima() {

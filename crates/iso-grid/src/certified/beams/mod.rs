@@ -9,7 +9,7 @@
 //!   enclose the root: no ray needs an interval of its own;
 //! - neither, as where rays graze the surface. If the second derivatives of F, enclosed as well, show that F bends one way along
 //!   every ray, each has at most two roots, and values of F tell them apart or that there are none. If F is made of several functions by
-//!   minima and maxima, as at an edge of a body, that is said of each of them, and their signs together tell where F has its root;
+//!   minima and maxima, as at an edge of a body, or has kinks inside, that is said of each of them, and their signs together tell where F has its root;
 //! - nothing: the stretch is cut, or the beam.
 //!
 //! What is left when beams are small goes to the search along single rays. A ray's stretches are looked at front to back

@@ -16,6 +16,9 @@ use crate::{Kernel, Workspace};
 /// Of functions of more operations it takes less time to enclose them as a whole, until places leave less of them.
 const LONG: u64 = 1024;
 
+/// Over beams of so many columns and rows hardly more is left out than over those that they are parts of.
+const SMALL: usize = 4;
+
 /// What is left of a function on a slab.
 #[derive(Clone, Copy, Debug)]
 enum Left {
@@ -30,18 +33,20 @@ enum Left {
 struct Several {
     /// Whether the sign of one of them is that of all.
     is_decided: bool,
-    /// Whether some may be undefined, all of which are still among `open`.
+    /// The numbers of those that may be zero, or undefined.
     open: Vec<u32>,
 }
 
 impl Subdivision<'_> {
     /// Keeps slabs that may hold roots, where F is made of functions that say more than F. All lie in the region, where the same kernels hold.
     pub(super) fn keep_by_faces(&mut self, slabs: &mut [Slab]) {
-        let Some(&Slab { kernels, .. }) = slabs.first() else { return };
+        let Some(&Slab { beam, kernels, .. }) = slabs.first() else { return };
         if self.kernels(kernels).operations(Kernel::Values) > LONG {
             let count = self.drop_free(slabs);
-            slabs[..count].iter().for_each(|slab| self.keep_unknown(slab));
-            return;
+            return slabs[..count].iter().for_each(|slab| self.keep_unknown(slab));
+        }
+        if self.beam(beam).area.side() <= SMALL && self.is_narrowed(kernels) {
+            return slabs.iter().for_each(|slab| self.keep_unknown(slab));
         }
         self.workspace.boxes.replace(slabs.iter().map(|slab| (slab.lo, slab.hi)));
         self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
