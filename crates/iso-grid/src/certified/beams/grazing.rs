@@ -10,7 +10,7 @@ use super::bows::{Bow, ways};
 use super::faces::{Face, Outline};
 use super::pixels::{Pixel, Verdict, halves_from};
 use super::subdivision::{Part, Subdivision};
-use crate::Kernel;
+use crate::{Kernel, Span};
 
 /// Second derivatives are asked for beams of so many columns or rows: they say little about larger ones, and a single ray is not worth
 /// it.
@@ -97,8 +97,12 @@ impl Subdivision<'_> {
 
     /// Whether second derivatives are likely to help with a part.
     pub(super) fn is_fit(&self, part: &Part) -> bool {
-        let elongation = self.beam(part.beam).elongation(part.form.reach);
-        part.is_inside && SIZES.contains(&self.size(part)) && elongation <= LONG
+        part.is_inside && SIZES.contains(&self.size(part)) && self.is_short(part.beam, part.form.reach)
+    }
+
+    /// Whether a stretch of a beam is not much longer than the beam is wide.
+    pub(super) fn is_short(&self, beam: u32, stretch: Span) -> bool {
+        self.beam(beam).elongation(stretch) <= LONG
     }
 
     /// How many columns or rows the beam of a part has.

@@ -40,16 +40,17 @@ struct Several {
 impl Subdivision<'_> {
     /// Keeps slabs that may hold roots, where F is made of functions that say more than F. All lie in the region, where the same kernels hold.
     pub(super) fn keep_by_faces(&mut self, slabs: &mut [Slab]) {
-        let Some(&Slab { beam, kernels, .. }) = slabs.first() else { return };
+        let Some(&Slab { beam, kernels, reach, .. }) = slabs.first() else { return };
         if self.kernels(kernels).operations(Kernel::Values) > LONG {
             let count = self.drop_free(slabs);
             return slabs[..count].iter().for_each(|slab| self.keep_unknown(slab));
         }
-        if self.beam(beam).area.side() <= SMALL && self.is_narrowed(kernels) {
+        self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
+        let is_small = self.beam(beam).area.side() <= SMALL && self.is_short(beam, reach);
+        if is_small && self.is_narrowed(kernels) {
             return slabs.iter().for_each(|slab| self.keep_unknown(slab));
         }
         self.workspace.boxes.replace(slabs.iter().map(|slab| (slab.lo, slab.hi)));
-        self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
         for (slab, left) in slabs.iter().zip(self.left_of(kernels, slabs)) {
             if let Left::Function(left) = left {
                 let kernels = self.number_within(left, slab);
