@@ -287,7 +287,11 @@ fn random_body(random: &mut Random, levels: u32) -> String {
     if levels == 0 {
         let [a, b, c] = [(); 3].map(|()| number(-1.0, 1.0));
         let size = number(0.1, 0.9);
-        return match random.below(4) {
+        return match random.below(7) {
+            // Limbs, which have joints, boxes with round edges, and what ends where it is defined.
+            4 => format!("((x-{a}-clamp(x,{b},{b}+{size}))^2 + (y-{b})^2 + (z+x/3-{c})^2 - 0.1)"),
+            5 => format!("(sqrt(max(abs(x-{a})-0.3,0)^2 + max(abs(y+{b})-{size},0)^2 + (z-{c})^2) - 0.2)"),
+            6 => format!("(sqrt(x-{a}) - {size} - abs(y-{b}))"),
             0 => format!("(sqrt((x-{a})^2 + (y-{b})^2 + (z-{c})^2) - {size})"),
             1 => format!("((x-{a})^2 + (z-{c})^2 - {size}^2)"),
             2 => format!("max(abs(x-{a}), abs(y-{b}), abs(z-{c})) - {size}"),
@@ -296,7 +300,8 @@ fn random_body(random: &mut Random, levels: u32) -> String {
     }
     let change = number(-0.2, 0.2);
     let [a, b] = [(); 2].map(|()| random_body(random, levels - 1));
-    match random.below(5) {
+    match random.below(6) {
+        5 => format!("(abs({a}) - {change}^2)"),
         0 => format!("max({a}, {b})"),
         1 => format!("max({a}, -({b}))"),
         2 => format!("(min({a}, {b}) - {change})"),
