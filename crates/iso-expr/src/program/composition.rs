@@ -38,15 +38,6 @@ impl<F> Composition<F> {
             }
         }
     }
-
-    /// The functions.
-    pub fn iter(&self) -> impl Iterator<Item = &F> {
-        let (several, three) = match self {
-            Self::Extreme(_, all) => (&all[..], None),
-            Self::Choice { by, below, above } => (&[][..], Some([by, below, above])),
-        };
-        several.iter().chain(three.into_iter().flatten())
-    }
 }
 
 impl Program {

@@ -290,7 +290,9 @@ impl<'a> Subdivision<'a> {
     /// The number of kernels, where they are likely to be those of number `other` or to have been given the last one.
     pub(super) fn known_number_of(&mut self, kernels: Arc<Kernels>, other: u32) -> u32 {
         let known = [0, other, self.kernels.len() as u32 - 1];
-        let known = known.into_iter().find(|number| self.kernels(*number).are(&kernels));
+        // What holds on a slab alone is made of less there than elsewhere.
+        let are_same = |number: &u32| !self.is_narrowed(*number) && self.kernels(*number).are(&kernels);
+        let known = known.into_iter().find(are_same);
         known.unwrap_or_else(|| self.number_of(kernels))
     }
 
