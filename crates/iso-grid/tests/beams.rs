@@ -287,8 +287,9 @@ fn random_body(random: &mut Random, levels: u32) -> String {
     if levels == 0 {
         let [a, b, c] = [(); 3].map(|()| number(-1.0, 1.0));
         let size = number(0.1, 0.9);
-        return match random.below(7) {
-            // Limbs, which have joints, boxes with round edges, and what ends where it is defined.
+        return match random.below(8) {
+            // Limbs, which have joints, boxes with round edges, what ends where it is defined, and stairs.
+            7 => format!("(z - {c} - floor(3(x-{a}))/7)"),
             4 => format!("((x-{a}-clamp(x,{b},{b}+{size}))^2 + (y-{b})^2 + (z+x/3-{c})^2 - 0.1)"),
             5 => format!("(sqrt(max(abs(x-{a})-0.3,0)^2 + max(abs(y+{b})-{size},0)^2 + (z-{c})^2) - 0.2)"),
             6 => format!("(sqrt(x-{a}) - {size} - abs(y-{b}))"),

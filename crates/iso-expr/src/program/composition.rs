@@ -42,10 +42,16 @@ impl<F> Composition<F> {
 
 impl Program {
     /// How this program's only output is made of others: as a minimum or a maximum, or the negative of one, or else by the minimum, the maximum or
-    /// the absolute value inside it that is computed first. `None` where there is none.
-    pub fn composition(&self) -> Option<Composition<Self>> {
+    /// the absolute value inside it that is computed first, unless it has more operations than `longest_choice`. `None` where there is none.
+    pub fn composition(&self, longest_choice: usize) -> Option<Composition<Self>> {
         let [output] = self.outputs[..] else { return None };
-        self.extreme_of(output).or_else(|| self.choice())
+        let choice = || if self.operations() <= longest_choice { self.choice() } else { None };
+        self.extreme_of(output).or_else(choice)
+    }
+
+    /// The program of one of its values.
+    fn of_value(&self, id: NodeId) -> Self {
+        Self { nodes: self.nodes.clone(), outputs: vec![id], ..Self::new() }.pruned()
     }
 
     /// The least or the greatest of two or more. The negative of a minimum is the maximum of the negatives.
@@ -61,10 +67,11 @@ impl Program {
             }
         }
         let alone = |Signed { id, is_negative }| {
-            let mut program = self.clone();
-            let output = if is_negative { program.apply(Operation::Negate, &[id]) } else { id };
-            program.outputs = vec![output];
-            program.pruned()
+            let mut program = self.of_value(id);
+            if is_negative {
+                program.outputs = vec![program.apply(Operation::Negate, &[program.outputs[0]])];
+            }
+            program
         };
         (operands.len() > 1).then(|| Composition::Extreme(extreme, operands.into_iter().map(alone).collect()))
     }
@@ -75,8 +82,8 @@ impl Program {
         let has_kink =
             |(_, node): &(NodeId, &Node)| matches!(node, Node::Apply(Minimum | Maximum | Absolute, _));
         let (kink, &Node::Apply(operation, _)) = self.iter().find(has_kink)? else { return None };
-        let of_kink = Self { outputs: vec![kink], ..self.clone() };
-        let by = of_kink.simplified_with(kink, |simplifier, [a, b]| match operation {
+        let of_kink = self.of_value(kink);
+        let by = of_kink.simplified_with(of_kink.outputs[0], |simplifier, [a, b]| match operation {
             Absolute => a,
             _ => simplifier.apply(Operation::Subtract, &[a, b]),
         });
@@ -124,7 +131,7 @@ mod tests {
     use crate::Ast;
 
     fn extreme_in(text: &str) -> (Extreme, Vec<Program>) {
-        let Some(Composition::Extreme(extreme, operands)) = read(text).composition() else {
+        let Some(Composition::Extreme(extreme, operands)) = read(text).composition(usize::MAX) else {
             panic!("neither a minimum nor a maximum")
         };
         (extreme, operands)
@@ -163,7 +170,8 @@ mod tests {
 
     #[test]
     fn others_stay_whole() {
-        assert!(read("1 + x").composition().is_none());
+        assert!(read("1 + x").composition(usize::MAX).is_none());
+        assert!(read("1 + max(x, y)").composition(1).is_none());
         let (extreme, operands) = extreme_in("min(x, max(y, z))");
         assert_eq!((extreme, operands.len()), (Extreme::Least, 2));
         assert!(operands.contains(&read("max(y, z)")));
@@ -179,7 +187,7 @@ mod tests {
             ("(x - min(max(y, 0), 1))^2", ["y", "x^2", "(x - min(y, 1))^2"]),
         ] {
             let [by, below, above] = expected.map(read);
-            assert_eq!(read(text).composition(), Some(Composition::Choice { by, below, above }), "{text}");
+            assert_eq!(read(text).composition(4), Some(Composition::Choice { by, below, above }), "{text}");
         }
     }
 }

@@ -187,10 +187,8 @@ impl Formula {
     /// How it is made of others everywhere, if it has kinks.
     pub(super) fn composition(&self, formulas: &Formulas) -> Option<&Composition<Arc<Self>>> {
         let find = || {
-            let composition = self.program().composition()?;
-            let is_choice = matches!(composition, Composition::Choice { .. });
-            let pays = !is_choice || self.program().operations() <= LONGEST_CHOICE;
-            pays.then(|| composition.map(|program| formulas.one_of(program, self)))
+            let composition = self.program().composition(LONGEST_CHOICE)?;
+            Some(composition.map(|program| formulas.one_of(program, self)))
         };
         self.composition.get_or_init(find).as_ref()
     }

@@ -142,9 +142,9 @@ impl Kernels {
         kernel.pays(self.program()).then(|| self.formula.over_boxes(kernel))
     }
 
-    /// The affine forms of F and its derivatives, by one of the kernels of forms, where that pays.
-    pub(super) fn forms(&self, kernel: Kernel) -> Option<&dyn BatchKernel> {
-        self.formula.has_forms().then(|| self.over_points(kernel))
+    /// Whether affine forms of F and its derivatives are asked for.
+    pub(super) fn have_forms(&self) -> bool {
+        self.formula.has_forms()
     }
 
     /// The corners of the box on which they hold.

@@ -17,12 +17,7 @@ impl Program {
     /// A program that computes the same outputs, to the last bit on every input, in fewer or cheaper operations.
     pub fn simplified(&self) -> Self {
         let mut program = Self::new();
-        program.outputs = program.import_with(self, |program, node| match node {
-            Node::Apply(operation, operands) => {
-                Simplifier { program }.apply(operation, &operands[..operation.arity()])
-            }
-            leaf => program.intern(leaf),
-        });
+        program.outputs = program.import_with(self, |program, node| Simplifier { program }.add(node));
         program.pruned()
     }
 
@@ -38,10 +33,7 @@ impl Program {
             place += 1;
             match node {
                 Node::Apply(_, [a, b, _]) if is_replaced => replace(&mut Simplifier { program }, [a, b]),
-                Node::Apply(operation, operands) => {
-                    Simplifier { program }.apply(operation, &operands[..operation.arity()])
-                }
-                leaf => program.intern(leaf),
+                _ => Simplifier { program }.add(node),
             }
         });
         program.pruned()
@@ -62,6 +54,14 @@ pub(super) struct Simplifier<'a> {
 }
 
 impl Simplifier<'_> {
+    /// The value of a node whose operands are simplified.
+    fn add(&mut self, node: Node) -> NodeId {
+        match node {
+            Node::Apply(operation, operands) => self.apply(operation, &operands[..operation.arity()]),
+            leaf => self.program.intern(leaf),
+        }
+    }
+
     /// The value of `operation` on `operands`: a constant, what a rule makes of it, or the operation itself.
     ///
     /// Rules call this again for what they build. That ends soon, whatever the program's size: every rule has fewer

@@ -116,8 +116,8 @@ impl Signs<'_> {
         roots.iter().for_each(|root| self.signs[root.face] = -known[root.face]);
         let is_other = self.made.sign(&self.signs) != before;
         // Where F is zero, one of those is that it may be.
-        let mut met = roots.iter().filter(|root| self.made.is_met(root.face));
-        let Some(first) = met.next() else {
+        let met = || roots.iter().filter(|root| self.made.is_met(root.face));
+        let Some(first) = met().next() else {
             return if is_other { Event::Unclear } else { Event::Nothing };
         };
         if let [root] = roots {
@@ -137,12 +137,12 @@ impl Signs<'_> {
             });
             signs == [before, -before]
         };
-        if let Some(root) = met.clone().chain([first]).find(decides) {
+        if let Some(root) = met().find(decides) {
             return Event::Meeting(root.face, root.hit);
         }
         let rises = |root: &Root| known[root.face] < 0.0;
         let is_alike = |root: &Root| self.are_monotone[root.face] && rises(root) == rises(first);
-        let is_simple = is_alike(first) && met.all(is_alike);
+        let is_simple = met().all(is_alike);
         let bracket = hull(roots);
         match (is_other, is_simple) {
             (true, true) if bracket.end - bracket.start <= self.tolerance => {

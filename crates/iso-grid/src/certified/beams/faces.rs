@@ -73,7 +73,7 @@ impl Subdivision<'_> {
         }
         let mut outlines = Vec::new();
         let Some(faces) = self.faces_of(part.kernels) else { return false };
-        if matches!(*faces, Composition::Choice { .. }) && self.has_forms(part.kernels) {
+        if matches!(*faces, Composition::Choice { .. }) && self.kernels(part.kernels).have_forms() {
             // Those hold across kinks inside a function, and say as much.
             return false;
         }

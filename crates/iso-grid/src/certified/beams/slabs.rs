@@ -99,6 +99,7 @@ impl Subdivision<'_> {
                 slab.kernels = self.kernels_on(slab.lo, slab.hi, kernels);
             }
         }
+        // Those that stick out of the region are told otherwise.
         let are_alike =
             |a: &Slab, b: &Slab| a.kernels == b.kernels && (!are_asked || a.is_inside == b.is_inside);
         for slabs in slabs.chunk_by_mut(are_alike) {
@@ -127,8 +128,8 @@ impl Subdivision<'_> {
         if self.are_left_to_faces(slabs) {
             return self.keep_by_faces(slabs);
         }
-        let (area, has_forms) = (self.beam(beam).area, self.has_forms(kernels));
-        let is_large = area.side() > VAGUE;
+        let has_forms = self.kernels(kernels).have_forms();
+        let is_large = self.beam(beam).area.side() > VAGUE;
         if self.kernels(kernels).may_be_shortened() || has_forms && is_large {
             // The gradient of a formula with branches takes much longer than its values, which often say enough. Of large sets
             // forms say less than enclosures.
@@ -151,7 +152,7 @@ impl Subdivision<'_> {
         if !are_fit {
             return false;
         }
-        let has_forms = self.has_forms(kernels);
+        let has_forms = self.kernels(kernels).have_forms();
         let operations = self.kernels(kernels).operations(Kernel::Values);
         // What was narrowed before has fewer operations than these.
         let is_narrowed = self.is_narrowed(kernels);
@@ -175,7 +176,7 @@ impl Subdivision<'_> {
             *unit = of_t;
         }
         let kernels = &self.kernels[kernels as usize];
-        forms.evaluate(kernels.forms(kind).expect("there are forms"), self.tile.direction(), scratch);
+        forms.evaluate(kernels.over_points(kind), self.tile.direction(), scratch);
         counters.box_evaluations += slabs.len() as u64;
         counters.operations += kernels.charge(kind, slabs.len());
         self.work_left = self.work_left.saturating_sub(slabs.len() as u64);

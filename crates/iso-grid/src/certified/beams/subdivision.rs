@@ -211,11 +211,6 @@ impl<'a> Subdivision<'a> {
         if self.tile.direction().is_some() { Kernel::ParallelForms } else { Kernel::Forms }
     }
 
-    /// Whether forms are asked for by kernels of a number.
-    pub(super) fn has_forms(&self, kernels: u32) -> bool {
-        self.kernels(kernels).forms(self.forms()).is_some()
-    }
-
     /// The column and the row of a ray of the tile.
     pub(super) fn position(&self, place: usize) -> (usize, usize) {
         (place % self.tile.width(), place / self.tile.width())
