@@ -31,14 +31,6 @@ impl PointBatch {
         self.z.push(point.z);
     }
 
-    /// The points of rays at one place of each, in place of all others.
-    pub(crate) fn replace<'a>(&mut self, places: impl Iterator<Item = (&'a Ray, f64)> + Clone) {
-        for (axis, coordinates) in [&mut self.x, &mut self.y, &mut self.z].into_iter().enumerate() {
-            coordinates.clear();
-            coordinates.extend(places.clone().map(|(ray, t)| ray.origin[axis] + t * ray.direction[axis]));
-        }
-    }
-
     /// Room for so many rows of points in place of all others, coordinate by coordinate.
     pub(crate) fn rows(&mut self, count: usize) -> impl Iterator<Item = [&mut Row; 3]> {
         rows([&mut self.x, &mut self.y, &mut self.z], count)

@@ -1,6 +1,6 @@
 //! Doubles side by side, as many as the processor computes with at once.
 
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use pulp::Simd;
 
@@ -37,10 +37,22 @@ impl<S: Simd> Lanes<S> {
         Self { simd, numbers: simd.splat_f64s(number) }
     }
 
+    /// Another number everywhere, beside these.
+    #[inline(always)]
+    pub(crate) fn all_be(self, number: f64) -> Self {
+        Self::all(self.simd, number)
+    }
+
     /// A part of a row.
     #[inline(always)]
     pub(crate) fn of(simd: S, row: &Row, part: usize) -> Self {
         Self { simd, numbers: S::as_simd_f64s(row).0[part] }
+    }
+
+    /// The same part of two rows.
+    #[inline(always)]
+    pub(crate) fn of_both(simd: S, [a, b]: &[Row; 2], part: usize) -> [Self; 2] {
+        [Self::of(simd, a, part), Self::of(simd, b, part)]
     }
 
     /// Puts the numbers in their place in a row.
@@ -83,11 +95,28 @@ impl<S: Simd> Lanes<S> {
         self.simd.reduce_max_f64s(self.numbers)
     }
 
+    /// The sum of the numbers, which are whole and small.
+    #[inline(always)]
+    pub(crate) fn sum(self) -> f64 {
+        self.simd.reduce_sum_f64s(self.numbers)
+    }
+
     /// The nearest numbers between two others; NaN where these are NaN.
     #[inline(always)]
     pub(crate) fn between(self, least: Self, most: Self) -> Self {
-        let raised = self.is_less(least).select(least, self);
-        most.is_less(raised).select(most, raised)
+        self.at_least(least).at_most(most)
+    }
+
+    /// The numbers, or others where these are greater; NaN where these numbers are NaN.
+    #[inline(always)]
+    pub(crate) fn at_least(self, least: Self) -> Self {
+        self.is_less(least).select(least, self)
+    }
+
+    /// The numbers, or others where these are less; NaN where these numbers are NaN.
+    #[inline(always)]
+    pub(crate) fn at_most(self, most: Self) -> Self {
+        most.is_less(self).select(most, self)
     }
 }
 
@@ -96,6 +125,30 @@ impl<S: Simd> Mask<S> {
     #[inline(always)]
     pub(crate) fn select(self, yes: Lanes<S>, no: Lanes<S>) -> Lanes<S> {
         Lanes { numbers: self.simd.select_f64s(self.mask, yes.numbers, no.numbers), ..yes }
+    }
+
+    /// Whether it is so of any number.
+    #[inline(always)]
+    pub(crate) fn is_any(self) -> bool {
+        self.simd.first_true_m64s(self.mask) < S::F64_LANES
+    }
+}
+
+impl<S: Simd> Not for Mask<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self { mask: self.simd.not_m64s(self.mask), ..self }
+    }
+}
+
+impl<S: Simd> Neg for Lanes<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { numbers: self.simd.neg_f64s(self.numbers), ..self }
     }
 }
 

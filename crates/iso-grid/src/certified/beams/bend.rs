@@ -2,9 +2,12 @@
 
 use glam::DVec3;
 use iso_expr::{Decorated, Decoration, Interval};
+use pulp::Simd;
 
 use super::beam::Beam;
+use super::course::Course;
 use super::form::{Ball, ROUNDING};
+use crate::lanes::Lanes;
 
 /// F near a point of a beam: for the ray that is a columns and b rows off its middle, F at `t` is
 /// `value` · (1, a, b, a², a·b, b²) up to `value_error`, its derivative by t there is `slope` · (1, a, b) up to `slope_error`, and its
@@ -20,15 +23,6 @@ pub(super) struct Bend {
     slope: [f64; 3],
     pub(super) slope_error: f64,
     pub(super) curvature: Interval,
-}
-
-/// F and its derivative along a ray at some t, each with a bound of how far it may be off.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Course {
-    pub(super) value: f64,
-    pub(super) value_error: f64,
-    pub(super) slope: f64,
-    pub(super) slope_error: f64,
 }
 
 /// Vectors, or the rows of matrices, no farther from `middle` than `radius`, component by component.
@@ -139,36 +133,39 @@ impl Bend {
         }
     }
 
-    /// What is known at `t` of the ray that is so many columns and rows off the middle.
-    #[inline]
-    pub(super) fn at(&self, across: f64, along: f64) -> Course {
+    /// What is known at `t` of rays that are so many columns and rows off the middle.
+    #[inline(always)]
+    pub(super) fn at<S: Simd>(&self, [across, along]: [Lanes<S>; 2]) -> Course<S> {
+        let all = |number| across.all_be(number);
         let [value, by_column, by_row, by_columns, by_both, by_rows] = self.value;
         let [slope, slope_by_column, slope_by_row] = self.slope;
         Course {
-            value: value
-                + across * (by_column + across * by_columns + along * by_both)
-                + along * (by_row + along * by_rows),
-            value_error: self.value_error,
-            slope: slope + across * slope_by_column + along * slope_by_row,
-            slope_error: self.slope_error,
+            value: all(value)
+                + across * (all(by_column) + across * all(by_columns) + along * all(by_both))
+                + along * (all(by_row) + along * all(by_rows)),
+            value_error: all(self.value_error),
+            slope: all(slope) + across * all(slope_by_column) + along * all(slope_by_row),
+            slope_error: all(self.slope_error),
         }
     }
 
-    /// What is known at `t` of all rays no more than `radii` columns and rows from the one that is so many off the middle.
-    #[inline]
-    pub(super) fn around(&self, (across, along): (f64, f64), radii: [f64; 2]) -> Course {
+    /// What is known at `t` of all rays no more than `radii` columns and rows from those that are so many off the middle.
+    #[inline(always)]
+    pub(super) fn around<S: Simd>(&self, middle: [Lanes<S>; 2], radii: [Lanes<S>; 2]) -> Course<S> {
+        let ([across, along], [a, b]) = (middle, radii);
+        let all = |number| across.all_be(number);
         let [_, by_column, by_row, by_columns, by_both, by_rows] = self.value;
         let [_, slope_by_column, slope_by_row] = self.slope;
-        let course = self.at(across, along);
-        let column = by_column + 2.0 * across * by_columns + along * by_both;
-        let row = by_row + 2.0 * along * by_rows + across * by_both;
-        let [a, b] = radii;
-        let value = a * (column.abs() + a * by_columns.abs() + b * by_both.abs())
-            + b * (row.abs() + b * by_rows.abs());
-        let slope = a * slope_by_column.abs() + b * slope_by_row.abs();
+        let course = self.at(middle);
+        let column = all(by_column) + across * all(2.0 * by_columns) + along * all(by_both);
+        let row = all(by_row) + along * all(2.0 * by_rows) + across * all(by_both);
+        let value = a * (column.abs() + a * all(by_columns.abs()) + b * all(by_both.abs()))
+            + b * (row.abs() + b * all(by_rows.abs()));
+        let slope = a * all(slope_by_column.abs()) + b * all(slope_by_row.abs());
+        let (rounding, more) = (all(ROUNDING), all(1.0 + ROUNDING));
         Course {
-            value_error: (1.0 + ROUNDING) * (course.value_error + value) + ROUNDING * course.value.abs(),
-            slope_error: (1.0 + ROUNDING) * (course.slope_error + slope) + ROUNDING * course.slope.abs(),
+            value_error: more * (course.value_error + value) + rounding * course.value.abs(),
+            slope_error: more * (course.slope_error + slope) + rounding * course.slope.abs(),
             ..course
         }
     }
@@ -195,6 +192,7 @@ mod tests {
 
     use iso_expr::random::Random;
     use iso_expr::{Ast, Interpreter, Scratch};
+    use pulp::Scalar;
 
     use super::*;
     use crate::area::Area;
@@ -281,10 +279,12 @@ mod tests {
                 };
                 let [value, x, y, z, ..] = at(&mut kernels, t);
                 let slope = along([x, y, z]);
-                let course = bend.at(a, b);
-                let around = bend.around((0.0, 0.0), beam.radii);
+                let all = |numbers: [f64; 2]| numbers.map(|number| Lanes::all(Scalar::new(), number));
+                let course = bend.at(all([a, b]));
+                let around = bend.around(all([0.0; 2]), all(beam.radii));
                 for (course, which) in [(course, "ray"), (around, "beam")] {
-                    let is_in = |found: Interval, middle: f64, error: f64| {
+                    let is_in = |found: Interval, middle: Lanes<Scalar>, error: Lanes<Scalar>| {
+                        let [middle, error] = [middle, error].map(Lanes::greatest);
                         found.lo <= middle + error && middle - error <= found.hi
                     };
                     assert!(is_in(value, course.value, course.value_error), "{which}: {value}, {course:?}");

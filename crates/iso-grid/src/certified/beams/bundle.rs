@@ -5,7 +5,7 @@ use iso_expr::{BatchKernel, Scratch};
 use pulp::{Simd, WithSimd};
 
 use super::form::{Model, ROUNDING};
-use super::pixels::STEPS;
+use super::pixels::{STEPS, state};
 use crate::batch::PointBatch;
 use crate::lanes::{Lanes, ROW, Row, parts};
 use crate::normals::put_units;
@@ -33,18 +33,6 @@ pub(crate) struct Bundle {
     /// How far t is from where F was taken last.
     moved: Row,
     state: Row,
-}
-
-/// How far a ray of a bundle has come: numbers, as whatever else is known of it.
-mod state {
-    /// There is no root where one is looked for, or no ray.
-    pub(super) const FREE: f64 = 0.0;
-    /// Another place is nearer to the root.
-    pub(super) const OPEN: f64 = 1.0;
-    /// There is one.
-    pub(super) const HIT: f64 = 2.0;
-    /// Single values do not tell.
-    pub(super) const LOST: f64 = 3.0;
 }
 
 /// A ray is near its root where another step is expected to leave this part of the tolerance.

@@ -4,15 +4,20 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use iso_expr::{Composition, Decoration, Extreme, Interval};
+use pulp::Simd;
 
-use super::bend::{Bend, Course};
-use super::bows::{Bow, ways};
+use super::bend::Bend;
+use super::bows::Bow;
+use super::course::ways;
 use super::form::{Form, Gradient};
 use super::made::{MOST, Made, deciding};
-use super::pixels::Pixel;
+use super::packet::Packet;
+use super::pixels::Pixels;
 use super::subdivision::{Faces, Known, Part, Subdivision};
+use crate::area::Area;
 use crate::certified::kernels::bounds_between;
-use crate::{Kernel, Ray, Span};
+use crate::lanes::{Lanes, Row, parts};
+use crate::{Kernel, Tile};
 
 /// With more open ones on the way, no others are asked for: it is unlikely that those decide enough.
 const TOO_MANY: usize = 2 * MOST;
@@ -36,32 +41,59 @@ pub(super) struct Face {
 }
 
 impl Face {
-    /// The sign of the function itself where that is certain on a stretch of a ray on which it is `course`.
-    #[inline]
-    pub(super) fn sign(&self, course: &Course, stretch: Span) -> Option<f64> {
-        course.sign_between(ways(stretch, self.bend.t), &self.bow).map(|sign| sign * self.bow.sign)
-    }
-
-    /// A ray, so many columns and rows off the middle, that is to meet the face in what is wanted.
-    #[inline]
-    pub(super) fn met_by(&self, ray: (usize, Ray), (a, b): (f64, f64), [wanted, reach]: [Span; 2]) -> Pixel {
-        let course = self.bend.at(a, b);
-        let way = course.way_to_root(&self.bow);
-        Pixel::starting(ray, [wanted, reach], &course, &self.bow).at_way(way)
-    }
-
-    /// The same ray behind the root where a face that bends falls, or its negative: to meet it where that rises again.
-    #[inline]
-    pub(super) fn met_again_by(
+    /// The signs of the function itself on all rays no more than `radii` columns and rows from those that are so many off the middle, where they
+    /// are certain on a stretch, or else 0.
+    #[inline(always)]
+    pub(super) fn signs<S: Simd>(
         &self,
-        ray: (usize, Ray),
-        (a, b): (f64, f64),
-        [wanted, reach]: [Span; 2],
-    ) -> Pixel {
-        let course = self.bend.at(a, b);
-        let way = course.way_to_second_root(&self.bow);
-        Pixel::starting(ray, [wanted, reach], &course, &self.bow).rising().at_way(way)
+        middle: [Lanes<S>; 2],
+        radii: [Lanes<S>; 2],
+        stretch: [Lanes<S>; 2],
+    ) -> Lanes<S> {
+        let all = |number| middle[0].all_be(number);
+        let course = self.bend.around(middle, radii);
+        course.sign_between(ways(stretch, all(self.bend.t)), &self.bow) * all(self.bow.sign)
     }
+
+    /// Rays that are to meet the face in what is wanted. Those on which its sign is known there are free.
+    #[inline(always)]
+    pub(super) fn met_by<S: Simd>(
+        &self,
+        simd: S,
+        (area, tile): (Area, &Tile<'_>),
+        (packet, wanted): (Packet, [Row; 2]),
+        sought: Sought,
+    ) -> Pixels {
+        let mut pixels = Pixels::new(packet, packet.rays(simd, tile), wanted, &self.bow);
+        for part in 0..parts::<S>() {
+            let course = self.bend.at(packet.offsets((simd, part), area));
+            let t = pixels.t(simd, part);
+            let sign = match sought {
+                Sought::Likely => Lanes::all(simd, 0.0),
+                _ => course.sign_between(ways(pixels.wanted(simd, part), t), &self.bow),
+            };
+            let way = match sought {
+                Sought::Second => course.way_to_second_root(&self.bow),
+                _ => course.way_to_root(&self.bow),
+            };
+            pixels.begin((simd, part), &course, (sign, way), &self.bow);
+        }
+        if sought == Sought::Second {
+            pixels.rise();
+        }
+        pixels
+    }
+}
+
+/// Which root of a face is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sought {
+    /// The first one, and there is likely to be one.
+    Likely,
+    /// The first one, if there is one.
+    First,
+    /// The second one of a face that bends, behind the root where it falls, or its negative: where that rises again.
+    Second,
 }
 
 impl Subdivision<'_> {
@@ -220,7 +252,7 @@ impl Subdivision<'_> {
     pub(super) fn face(&mut self, part: &Part, &Outline { kernels, form, jet }: &Outline) -> Option<Face> {
         let bend = self.expand(part, self.center(part), jet, kernels)?;
         let error = self.error_of_values(part, kernels)?;
-        let bow = Bow::new(&bend, form.slope, error, self.tolerance(part))?;
+        let bow = Bow::new((&bend, part.form.reach), form.slope, error, self.tolerance(part))?;
         let bend = if bow.sign < 0.0 { bend.negated() } else { bend };
         Some(Face { kernels, bend, bow })
     }

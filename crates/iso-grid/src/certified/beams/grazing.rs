@@ -4,13 +4,17 @@ use std::ops::RangeInclusive;
 
 use glam::DVec3;
 use iso_expr::{Decorated, Interval};
+use pulp::{Simd, WithSimd};
 
 use super::bend::Bend;
-use super::bows::{Bow, ways};
+use super::bows::Bow;
+use super::course::ways_of_all;
 use super::faces::{Face, Outline};
-use super::pixels::{Pixel, Verdict, halves_from};
-use super::subdivision::{Part, Subdivision};
-use crate::{Kernel, Span};
+use super::packet::{OpenRays, Packet, Signed, for_all};
+use super::pixels::{End, Pixels};
+use super::subdivision::{Memory, Part, Subdivision};
+use crate::lanes::{Lanes, ROW, Row, parts};
+use crate::{Kernel, Span, Tile};
 
 /// Second derivatives are asked for beams of so many columns or rows: they say little about larger ones, and a single ray is not worth
 /// it.
@@ -24,13 +28,10 @@ const ENOUGH: u32 = 6;
 const SELDOM: u32 = 2;
 
 /// A beam is cut when more rays are likely to be followed in vain.
-pub(super) const DOUBTFUL: usize = 64;
+pub(super) const DOUBTFUL: f64 = 64.0;
 
 /// Longer stretches, compared to the beam's width, are cut first.
 const LONG: f64 = 2.5;
-
-/// Blocks of so many columns and rows are first looked at as a whole.
-pub(super) const BLOCK: usize = 4;
 
 /// How often second derivatives were asked for in a tile, and how often they helped, for beams up to each power of two.
 #[derive(Clone, Copy, Debug, Default)]
@@ -71,19 +72,21 @@ impl Subdivision<'_> {
     }
 
     /// Follows each ray of a part on which F has the sign of a function that bends one way or is monotone; says whether it did.
-    pub(super) fn follow_smooth(&mut self, part: &Part, Face { kernels, bend, bow }: &Face) -> bool {
-        let mut pixels = std::mem::take(&mut self.memory.bowed);
-        let count = self.start_bent(part, bend, bow, &mut pixels);
-        if let Some(count) = count {
-            let mut ended = std::mem::take(&mut self.memory.ended);
-            self.pursue(&mut pixels[..count], *kernels, bow, &mut ended);
-            for ended in ended.drain(..) {
-                self.settle(ended, *kernels);
+    pub(super) fn follow_smooth(&mut self, part: &Part, face: &Face) -> bool {
+        let mut pixels = std::mem::take(&mut self.memory.pixels);
+        let is_followed = self.start_bent(part, face, &mut pixels);
+        if is_followed {
+            self.pursue(&mut pixels, face.kernels, &face.bow);
+            for (place, end) in pixels.iter().flat_map(Pixels::ends) {
+                match end {
+                    End::Free(_) => {}
+                    End::Hit(hit, _) => self.meet(place, hit, face.kernels),
+                    End::Lost(wanted) => self.search_one(self.position(place), wanted),
+                }
             }
-            self.memory.ended = ended;
         }
-        self.memory.bowed = pixels;
-        count.is_some()
+        self.memory.pixels = pixels;
+        is_followed
     }
 
     /// F on a part to first order, where its second derivatives are likely to help.
@@ -149,56 +152,67 @@ impl Subdivision<'_> {
         self.certified.accuracy * part.stretch.start.max(1.0).min(part.stretch.end)
     }
 
-    /// Puts the rays of a part that are still followed and may have a root there in front of `pixels`, and counts them; `None` when
-    /// too many may be followed in vain.
-    fn start_bent(&mut self, part: &Part, bend: &Bend, bow: &Bow, pixels: &mut Vec<Pixel>) -> Option<usize> {
-        let beam = &self.memory.beams[part.beam as usize];
-        let area = beam.area;
-        let room = area.width * area.height;
-        if pixels.len() < room {
-            pixels.resize(room, Pixel::default());
+    /// The rays of a part that are still followed and may have a root there; says whether not too many may be followed in vain.
+    fn start_bent(&mut self, part: &Part, Face { bend, bow, .. }: &Face, pixels: &mut Vec<Pixels>) -> bool {
+        let arch = self.workspace.arch;
+        let Memory { beams, open, packets, .. } = &mut self.memory;
+        let rays = OpenRays { area: beams[part.beam as usize].area, open, width: self.tile.width() };
+        let bent = Bent { bend, bow, stretch: part.stretch };
+        arch.dispatch(Start { rays, tile: &self.tile, bent, packets, pixels })
+    }
+}
+
+/// The search of a part for rays that may have a root.
+struct Start<'a> {
+    rays: OpenRays<'a>,
+    tile: &'a Tile<'a>,
+    bent: Bent<'a>,
+    packets: &'a mut Vec<Packet>,
+    pixels: &'a mut Vec<Pixels>,
+}
+
+/// A function that bends, or is monotone, on a stretch.
+struct Bent<'a> {
+    bend: &'a Bend,
+    bow: &'a Bow,
+    stretch: Span,
+}
+
+impl Signed for Bent<'_> {
+    #[inline(always)]
+    fn signs<S: Simd>(&self, simd: S, middle: &[Row; 2], radii: &[Row; 2]) -> Row {
+        let mut signs = [0.0; ROW];
+        let ways = ways_of_all(simd, self.stretch, self.bend.t);
+        for part in 0..parts::<S>() {
+            let (middle, radii) = (Lanes::of_both(simd, middle, part), Lanes::of_both(simd, radii, part));
+            self.bend.around(middle, radii).sign_between(ways, self.bow).put(&mut signs, part);
         }
-        let (mut count, mut doubtful) = (0, 0);
-        for block in area.blocks(BLOCK) {
-            if !self.is_open(block) {
-                continue;
+        signs
+    }
+}
+
+impl WithSimd for Start<'_> {
+    /// Whether not too many rays may be followed in vain.
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        let Self { rays, tile, bent, packets, pixels } = self;
+        let Bent { bend, bow, stretch } = bent;
+        rays.pack(simd, &bent, packets);
+        let mut doubtful = 0.0;
+        pixels.clear();
+        for packet in packets {
+            let mut some = Pixels::new(*packet, packet.rays(simd, tile), for_all(stretch), bow);
+            for part in 0..parts::<S>() {
+                let course = bend.at(packet.offsets((simd, part), rays.area));
+                doubtful += some.start((simd, part), &course, bow);
             }
-            let [across, along] = block.radii();
-            let (middle_column, middle_row) = area.offset(block.column, block.row);
-            let middle = (middle_column + across, middle_row + along);
-            let stretch = ways(part.stretch, bend.t);
-            let all = bend.around(middle, block.radii());
-            if all.sign_between(stretch, bow).is_some() {
-                continue;
+            if doubtful > DOUBTFUL {
+                return false;
             }
-            for (row, b) in block.rows().zip(halves_from(middle_row)) {
-                for (column, a) in block.columns().zip(halves_from(middle_column)) {
-                    let place = row * self.tile.width() + column;
-                    if !self.memory.open[place] {
-                        continue;
-                    }
-                    let course = bend.at(a, b);
-                    let mut pixel = Pixel::starting(
-                        (place, self.tile.ray(column, row)),
-                        [part.stretch, part.form.reach],
-                        &course,
-                        bow,
-                    );
-                    match pixel.judge(course, bow) {
-                        Verdict::Free(_) => continue,
-                        Verdict::Open => {
-                            doubtful += usize::from(course.is_doubtful(pixel.t - bend.t, stretch, bow));
-                            if doubtful > DOUBTFUL {
-                                return None;
-                            }
-                        }
-                        Verdict::Hit | Verdict::Lost => pixel.t = bend.t,
-                    }
-                    pixels[count] = pixel;
-                    count += 1;
-                }
-            }
+            pixels.push(some);
         }
-        Some(count)
+        true
     }
 }

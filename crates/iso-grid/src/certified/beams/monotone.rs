@@ -3,7 +3,6 @@
 use super::beam::Beam;
 use super::bundle::{AT_ONCE, Bundle, Last, Pursuit, Sight, Start};
 use super::form::{Form, Model, ROUNDING};
-use super::pixels::halves_from;
 use super::rounding::Rounding;
 use super::subdivision::{Part, Subdivision};
 use crate::area::Area;
@@ -214,6 +213,11 @@ impl Subdivision<'_> {
         }
         Some([wanted, reach])
     }
+}
+
+/// Numbers from a whole or half one on, one apart. Exact.
+fn halves_from(first: f64) -> impl Iterator<Item = f64> {
+    std::iter::successors(Some(first), |number| Some(number + 1.0))
 }
 
 /// What is in both; it ends before it starts when nothing is.

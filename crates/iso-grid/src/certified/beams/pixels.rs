@@ -1,49 +1,71 @@
-//! Rays of a part along which F may bend, followed each for its own by values of F. Where F is monotone, they are followed
-//! [side by side](super::bundle).
+//! Rays of a part along which F may bend, followed by values of F. Where F is monotone, they are followed by its [slopes](super::bundle).
 
-use super::bows::{Bow, Bowed};
+use iso_expr::{BatchKernel, Scratch};
+use pulp::{Simd, WithSimd};
+
+use super::bows::Bow;
+use super::bundle::AT_ONCE;
+use super::course::{Course, ways};
+use super::form::ROUNDING;
+use super::packet::Packet;
 use super::subdivision::Subdivision;
-use crate::{Hit, Kernel, Ray, Span, Workspace};
+use crate::batch::PointBatch;
+use crate::lanes::{Lanes, Mask, Row, parts};
+use crate::raster::RayRow;
+use crate::{Hit, Kernel, Span, Workspace};
 
 /// How many values of F a ray is given at most before it is searched for its own.
 pub(super) const STEPS: usize = 10;
 
-/// A ray that may have a root in a part, and what is known of F along it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Pixel {
-    /// Which ray of the tile it is, or of some that are pursued together.
-    pub(super) place: usize,
-    pub(super) ray: Ray,
-    /// Where the part's certificate holds inside the region.
-    pub(super) reach: Span,
-    /// Where a root is looked for: everything before it is free of roots.
-    pub(super) wanted: Span,
-    /// Where F is to be taken next, inside `reach`.
-    pub(super) t: f64,
+/// How far a ray has come: numbers, as whatever else is known of it.
+pub(super) mod state {
+    /// There is no root where one is looked for, or no ray.
+    pub(in super::super) const FREE: f64 = 0.0;
+    /// Another place is nearer to the root.
+    pub(in super::super) const OPEN: f64 = 1.0;
+    /// There is one.
+    pub(in super::super) const HIT: f64 = 2.0;
+    /// Single values do not tell.
+    pub(in super::super) const LOST: f64 = 3.0;
+}
+
+/// Rays that may each have a root in a part, and what is known of F along them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pixels {
+    packet: Packet,
+    rays: RayRow,
+    /// Where a root is looked for: everything before it is free of roots. In the end, what encloses it.
+    wanted: [Row; 2],
+    /// Where F is to be taken next. In the end, about where the root is.
+    t: Row,
+    state: Row,
+    /// The sign of F where there is no root, or before it.
+    sign: Row,
     pub(super) known: Bowed,
 }
 
-/// What a value told of a pixel.
-pub(super) enum Verdict {
-    /// There is no root where one is looked for: F has this sign there.
-    Free(f64),
-    /// There is one: `wanted` encloses it, and t is about where it is.
-    Hit,
-    /// Another place is nearer to the root.
-    Open,
-    /// Single values do not tell.
-    Lost,
+/// What is known of F along rays that bend.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bowed {
+    /// The slope where the part's expansion is centred.
+    slope: Row,
+    /// Where F was taken last, and its value there; NaN before the first.
+    last_t: Row,
+    last: Row,
+    /// 1 where F is negative where a root is wanted first, or else 0.
+    pub(super) starts_below: Row,
+}
+
+/// What values tell of pixels.
+pub(super) struct Verdict<S: Simd> {
+    pub(super) state: Lanes<S>,
+    pub(super) sign: Lanes<S>,
+    pub(super) t: Lanes<S>,
+    pub(super) wanted: [Lanes<S>; 2],
+    pub(super) starts_below: Lanes<S>,
 }
 
 /// How the pursuit of a ray ended.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Ended {
-    /// The place of its pixel.
-    pub(super) place: usize,
-    pub(super) end: End,
-}
-
-/// An end of a pursuit.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum End {
     /// There is no root, and F has this sign.
@@ -54,74 +76,207 @@ pub(super) enum End {
     Lost(Span),
 }
 
-impl Subdivision<'_> {
-    /// Goes on with each ray to its root in the part, and notes how it ended.
-    pub(super) fn pursue(
+impl Pixels {
+    /// Rays that look for a root where one is wanted, and begin where a part's expansion is centred.
+    pub(super) fn new(packet: Packet, rays: RayRow, wanted: [Row; 2], bow: &Bow) -> Self {
+        let (nothing, no) = ([f64::NAN; _], [0.0; _]);
+        let known = Bowed { slope: no, last_t: nothing, last: nothing, starts_below: no };
+        let state = packet.each(state::OPEN, state::FREE);
+        Self { packet, rays, wanted, t: [bow.t; _], state, sign: no, known }
+    }
+
+    /// F is `course` where the part's expansion is centred. Where it has no sign yet, the root is about so far away.
+    #[inline(always)]
+    pub(super) fn begin<S: Simd>(
         &mut self,
-        mut pixels: &mut [Pixel],
-        kernels: u32,
+        (simd, part): (S, usize),
+        course: &Course<S>,
+        (sign, way): (Lanes<S>, Lanes<S>),
         bow: &Bow,
-        ended: &mut Vec<Ended>,
     ) {
-        for step in 1..=STEPS {
-            if pixels.is_empty() {
-                break;
-            }
-            let count = self.approach(pixels, (kernels, bow), step == STEPS, ended);
-            pixels = &mut pixels[..count];
-        }
+        let all = |number| Lanes::all(simd, number);
+        let is_open = sign.is_same(all(0.0)) & self.are_open(simd, part);
+        let t = self.t(simd, part);
+        let is_known = way.abs().is_less(all(f64::INFINITY));
+        is_known.select(bow.in_reach(t + way), t).put(&mut self.t, part);
+        is_open.select(all(state::OPEN), all(state::FREE)).put(&mut self.state, part);
+        (sign * all(bow.sign)).put(&mut self.sign, part);
+        course.slope.put(&mut self.known.slope, part);
     }
 
-    /// Ends a ray that was pursued by kernels of a number, or searches it.
-    pub(super) fn settle(&mut self, Ended { place, end }: Ended, kernels: u32) {
-        match end {
-            End::Free(_) => {}
-            End::Hit(hit, _) => self.meet(place, hit, kernels),
-            End::Lost(wanted) => {
-                self.search_one(self.position(place), wanted);
-            }
-        }
+    /// F is `course` where the part's expansion is centred: looks for the root from there. Counts the rays that may be followed in vain.
+    #[inline(always)]
+    pub(super) fn start<S: Simd>(&mut self, (simd, part): (S, usize), course: &Course<S>, bow: &Bow) -> f64 {
+        let all = |number| Lanes::all(simd, number);
+        let (was_open, t) = (self.are_open(simd, part), self.t(simd, part));
+        let wanted = self.wanted(simd, part);
+        let mut verdict = self.judge((simd, part), *course, bow);
+        let (free, open) = (all(state::FREE), all(state::OPEN));
+        let (is_free, is_open) = (verdict.state.is_same(free), verdict.state.is_same(open));
+        let is_doubtful = was_open & is_open & course.is_doubtful(verdict.t - t, ways(wanted, t), bow);
+        // What is told of roots so early is told again by the first value.
+        verdict.t = is_open.select(verdict.t, t);
+        verdict.wanted = wanted;
+        verdict.state = is_free.select(free, open);
+        self.follow((simd, part), &verdict);
+        course.slope.put(&mut self.known.slope, part);
+        is_doubtful.select(all(1.0), all(0.0)).sum()
     }
 
-    /// Takes F at each pixel's t, and counts the pixels that are nearer to their roots by that, which are then in front. The last
-    /// time, those are searched each for its own.
-    fn approach(
-        &mut self,
-        pixels: &mut [Pixel],
-        (kernels, bow): (u32, &Bow),
-        is_last: bool,
-        ended: &mut Vec<Ended>,
-    ) -> usize {
-        let Workspace { points, scratch, counters, .. } = &mut *self.workspace;
-        let of_part = &self.kernels[kernels as usize];
-        points.replace(pixels.iter().map(|pixel| (&pixel.ray, pixel.t)));
-        counters.trace_evaluations += pixels.len() as u64;
-        counters.operations += of_part.charge(Kernel::Values, pixels.len());
-        let values = points.evaluate(of_part.over_points(Kernel::Values), scratch, 1);
-        let mut kept = 0;
-        for number in 0..pixels.len() {
-            let pixel = &mut pixels[number];
-            let place = pixel.place;
-            match pixel.look(values[number], bow) {
-                Verdict::Open if !is_last => {
-                    if kept < number {
-                        pixels[kept] = pixels[number];
-                    }
-                    kept += 1;
-                }
-                Verdict::Open | Verdict::Lost => ended.push(Ended { place, end: End::Lost(pixel.wanted) }),
-                Verdict::Free(sign) => ended.push(Ended { place, end: End::Free(sign) }),
-                Verdict::Hit => {
-                    let hit = Hit { t: pixel.t, bracket: pixel.wanted };
-                    ended.push(Ended { place, end: End::Hit(hit, pixel.sign_before(bow)) });
-                }
-            }
+    /// The root is wanted at which functions that bend rise again.
+    pub(super) fn rise(&mut self) {
+        self.known.starts_below = [1.0; _];
+    }
+
+    fn is_any_open(&self) -> bool {
+        self.state.contains(&state::OPEN)
+    }
+
+    /// Those that are followed.
+    #[inline(always)]
+    pub(super) fn are_open<S: Simd>(&self, simd: S, part: usize) -> Mask<S> {
+        Lanes::of(simd, &self.state, part).is_same(Lanes::all(simd, state::OPEN))
+    }
+
+    /// Where a root is looked for.
+    #[inline(always)]
+    pub(super) fn wanted<S: Simd>(&self, simd: S, part: usize) -> [Lanes<S>; 2] {
+        Lanes::of_both(simd, &self.wanted, part)
+    }
+
+    /// Where F is to be taken next.
+    #[inline(always)]
+    pub(super) fn t<S: Simd>(&self, simd: S, part: usize) -> Lanes<S> {
+        Lanes::of(simd, &self.t, part)
+    }
+
+    /// Takes over what was told of those that are open.
+    #[inline(always)]
+    pub(super) fn follow<S: Simd>(&mut self, (simd, part): (S, usize), verdict: &Verdict<S>) {
+        let was_open = self.are_open(simd, part);
+        let put = |to: &mut Row, from: Lanes<S>| {
+            was_open.select(from, Lanes::of(simd, to, part)).put(to, part);
+        };
+        put(&mut self.t, verdict.t);
+        put(&mut self.wanted[0], verdict.wanted[0]);
+        put(&mut self.wanted[1], verdict.wanted[1]);
+        put(&mut self.sign, verdict.sign);
+        put(&mut self.known.starts_below, verdict.starts_below);
+        put(&mut self.state, verdict.state);
+    }
+
+    /// Learns from the values that were computed for F at t; says whether any ray is still open.
+    #[inline(always)]
+    fn look<S: Simd>(&mut self, simd: S, values: &Row, bow: &Bow) -> bool {
+        let all = |number| Lanes::all(simd, number);
+        let mut is_any_open = false;
+        for part in 0..parts::<S>() {
+            let at = |row: &Row| Lanes::of(simd, row, part);
+            let (t, value) = (at(&self.t), all(bow.sign) * at(values));
+            let is_known = value.abs().is_less(all(f64::INFINITY));
+            let away = t - all(bow.t);
+            let (slope, bending) = (at(&self.known.slope), away * all(bow.middle));
+            let rounding = all(ROUNDING) * (slope.abs() + bending.abs());
+            let error_there = all(bow.slope_error) + away.abs() * all(bow.spread) + rounding;
+            let slope_there = slope + bending;
+            // The slope at t is the one from the last place to here, and half the way more of bending.
+            let step = t - at(&self.known.last_t);
+            let (slope, bending) = ((value - at(&self.known.last)) / step, all(0.5) * step * all(bow.middle));
+            let error = all(0.5) * step.abs() * all(bow.spread)
+                + all(2.0 * bow.error) / step.abs()
+                + all(ROUNDING) * (slope.abs() + bending.abs());
+            let is_nearer = error.is_less(error_there);
+            let course = Course {
+                value,
+                value_error: all(bow.error),
+                slope: is_nearer.select(slope + bending, slope_there),
+                slope_error: is_nearer.select(error, error_there),
+            };
+            t.put(&mut self.known.last_t, part);
+            value.put(&mut self.known.last, part);
+            let mut verdict = self.judge((simd, part), course, bow);
+            verdict.state = is_known.select(verdict.state, all(state::LOST));
+            self.follow((simd, part), &verdict);
+            is_any_open |= self.are_open(simd, part).is_any();
         }
-        kept
+        is_any_open
+    }
+
+    /// How each ray ended, by its place.
+    pub(super) fn ends(&self) -> impl Iterator<Item = (usize, End)> {
+        self.packet.places().enumerate().map(|(lane, place)| {
+            let wanted = Span { start: self.wanted[0][lane], end: self.wanted[1][lane] };
+            let end = match self.state[lane] {
+                state::FREE => End::Free(self.sign[lane]),
+                state::HIT => End::Hit(Hit { t: self.t[lane], bracket: wanted }, self.sign[lane]),
+                _ => End::Lost(wanted),
+            };
+            (place, end)
+        })
     }
 }
 
-/// Numbers from a whole or half one on, one apart. Exact.
-pub(super) fn halves_from(first: f64) -> impl Iterator<Item = f64> {
-    std::iter::successors(Some(first), |number| Some(number + 1.0))
+/// The pursuit of rays, no more than [`AT_ONCE`] times as many as stand side by side.
+struct Approach<'a> {
+    pixels: &'a mut [Pixels],
+    bow: &'a Bow,
+    kernel: &'a dyn BatchKernel,
+    points: &'a mut PointBatch,
+    scratch: &'a mut Scratch,
+}
+
+impl WithSimd for Approach<'_> {
+    /// How many values were taken.
+    type Output = usize;
+
+    /// Goes on with each ray to its root.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> usize {
+        let Self { pixels, bow, kernel, points, scratch } = self;
+        let (mut open, mut count, mut taken) = ([0; AT_ONCE], 0, 0);
+        for (number, pixels) in pixels.iter().enumerate() {
+            if pixels.is_any_open() {
+                open[count] = number;
+                count += 1;
+            }
+        }
+        for _ in 0..STEPS {
+            if count == 0 {
+                break;
+            }
+            for (coordinates, number) in points.rows(count).zip(&open) {
+                let Pixels { rays, t, .. } = &pixels[*number];
+                rays.at(simd, t, coordinates);
+            }
+            let (values, _) = points.evaluate(kernel, scratch, 1).as_chunks();
+            taken += values.as_flattened().len();
+            let mut kept = 0;
+            for (place, values) in values.iter().enumerate() {
+                let number = open[place];
+                if pixels[number].look(simd, values, bow) {
+                    open[kept] = number;
+                    kept += 1;
+                }
+            }
+            count = kept;
+        }
+        taken
+    }
+}
+
+impl Subdivision<'_> {
+    /// Goes on with each ray to its root in a part of these kernels. Those that are still open in the end are lost.
+    pub(super) fn pursue(&mut self, pixels: &mut [Pixels], kernels: u32, bow: &Bow) {
+        let Workspace { arch, points, scratch, counters, .. } = &mut *self.workspace;
+        if !pixels.iter().any(Pixels::is_any_open) {
+            return;
+        }
+        let of_part = &self.kernels[kernels as usize];
+        let kernel = of_part.over_points(Kernel::Values);
+        for pixels in pixels.chunks_mut(AT_ONCE) {
+            let taken = arch.dispatch(Approach { pixels, bow, kernel, points, scratch });
+            counters.trace_evaluations += taken as u64;
+            counters.operations += of_part.charge(Kernel::Values, taken);
+        }
+    }
 }

@@ -11,7 +11,8 @@ use super::bundle::Bundle;
 use super::edges::Meeting;
 use super::form::Form;
 use super::grazing::Attempts;
-use super::pixels::{Ended, Pixel};
+use super::packet::Packet;
+use super::pixels::Pixels;
 use super::rounding::Rounding;
 use super::slabs::{LEAST_OVERLAP, Slab};
 use crate::area::Area;
@@ -76,10 +77,11 @@ pub(crate) struct Memory {
     pub(super) slabs: Vec<Slab>,
     pub(super) attempts: Attempts,
     pub(super) bundles: Vec<Bundle>,
-    pub(super) bowed: Vec<Pixel>,
+    pub(super) packets: Vec<Packet>,
+    pub(super) pixels: Vec<Pixels>,
     pub(super) meetings: Vec<Meeting>,
-    /// How rays ended that were pursued.
-    pub(super) ended: Vec<Ended>,
+    /// The numbers of meetings that are asked for a face, and where.
+    pub(super) asked: Vec<(usize, Span)>,
     /// The hits whose normals are still to be found, each with the number of kernels of a function that has its own.
     pub(super) met: Vec<(u32, Asked)>,
     /// What was found out last of rounding.
