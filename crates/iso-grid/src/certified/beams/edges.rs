@@ -56,6 +56,8 @@ struct Survey<'a> {
     body: Body<'a>,
     packets: &'a mut Vec<Packet>,
     meetings: &'a mut Vec<Meeting>,
+    /// Rays along which F is zero where one of the faces is, for each face.
+    alone: &'a mut [Vec<Packet>; MOST],
 }
 
 /// What is made of faces, on a stretch.
@@ -86,15 +88,21 @@ impl WithSimd for Survey<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
-        let Self { rays, body, packets, meetings } = self;
+        let Self { rays, body, packets, meetings, alone } = self;
+        alone.iter_mut().for_each(Vec::clear);
         rays.pack(simd, &body, packets);
         let mut doubtful = 0.0;
         for packet in packets {
             let outlook = body.outlook(simd, packet, rays.area);
             for (lane, place) in packet.places().enumerate() {
                 let signs = outlook.signs.map(|signs| signs[lane]);
-                if body.made.sign(&signs) == 0.0 {
-                    doubtful += 1.0 - outlook.is_likely[lane];
+                if body.made.sign(&signs) != 0.0 {
+                    continue;
+                }
+                doubtful += 1.0 - outlook.is_likely[lane];
+                if let Some(face) = body.made.face_alone(&signs) {
+                    packet.put_into(&mut alone[face], lane);
+                } else {
                     meetings.push(Meeting {
                         place,
                         asked: body.asked,
@@ -156,6 +164,28 @@ impl Body<'_> {
     }
 }
 
+/// Rays that are to meet a face alone.
+struct Alone<'a> {
+    rays: (Area, &'a Tile<'a>),
+    face: &'a Face,
+    packets: &'a [Packet],
+    asked: Span,
+    pixels: &'a mut Vec<Pixels>,
+}
+
+impl WithSimd for Alone<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { rays, face, packets, asked, pixels } = self;
+        pixels.clear();
+        for packet in packets {
+            pixels.push(face.met_by(simd, rays, (*packet, for_all(asked)), Sought::Likely));
+        }
+    }
+}
+
 /// Rays that are to meet a face.
 struct Ask<'a> {
     rays: (Area, &'a Tile<'a>),
@@ -193,8 +223,12 @@ impl Subdivision<'_> {
         let made = &Combinations::new(made, faces.len());
         let mut meetings = std::mem::take(&mut self.memory.meetings);
         meetings.clear();
-        let is_followed = self.meet_faces(part, (faces, made), &mut meetings);
+        let mut alone = std::mem::take(&mut self.memory.alone);
+        let is_followed = self.meet_faces(part, (faces, made), (&mut meetings, &mut alone));
         if is_followed {
+            for (face, packets) in faces.iter().zip(&alone) {
+                self.follow_alone(part, face, packets);
+            }
             // First the likely roots, so that others are asked for in what is left.
             for sought in [Sought::Likely, Sought::First] {
                 for (number, face) in faces.iter().enumerate() {
@@ -210,7 +244,7 @@ impl Subdivision<'_> {
                 }
             }
         }
-        self.memory.meetings = meetings;
+        (self.memory.meetings, self.memory.alone) = (meetings, alone);
         is_followed
     }
 
@@ -219,18 +253,34 @@ impl Subdivision<'_> {
         &mut self,
         part: &Part,
         (faces, made): (&[Face], &Combinations),
-        meetings: &mut Vec<Meeting>,
+        (meetings, alone): (&mut Vec<Meeting>, &mut [Vec<Packet>; MOST]),
     ) -> bool {
-        let (tolerance, reach) = (self.tolerance(part), part.form.reach);
-        let Span { start, end } = part.stretch;
-        // A little beyond the stretch, so that all is known around a root in it.
-        let asked =
-            Span { start: (start - tolerance).max(reach.start), end: (end + tolerance).min(reach.end) };
-        let body = Body { faces, made, asked };
+        let body = Body { faces, made, asked: self.asked(part) };
         let arch = self.workspace.arch;
         let Memory { beams, open, packets, .. } = &mut self.memory;
         let rays = OpenRays { area: beams[part.beam as usize].area, open, width: self.tile.width() };
-        arch.dispatch(Survey { rays, body, packets, meetings })
+        arch.dispatch(Survey { rays, body, packets, meetings, alone })
+    }
+
+    /// The stretch of a part, and a little more, so that all is known around a root in it.
+    fn asked(&self, part: &Part) -> Span {
+        let (tolerance, reach) = (self.tolerance(part), part.form.reach);
+        let Span { start, end } = part.stretch;
+        Span { start: (start - tolerance).max(reach.start), end: (end + tolerance).min(reach.end) }
+    }
+
+    /// Ends or goes on with rays that meet the body where they meet a face.
+    fn follow_alone(&mut self, part: &Part, face: &Face, packets: &[Packet]) {
+        if packets.is_empty() {
+            return;
+        }
+        let mut pixels = std::mem::take(&mut self.memory.pixels);
+        let rays = (self.beam(part.beam).area, &self.tile);
+        let pixels_of = Alone { rays, face, packets, asked: self.asked(part), pixels: &mut pixels };
+        self.workspace.arch.dispatch(pixels_of);
+        self.pursue(&mut pixels, face.kernels, &face.bow);
+        self.settle(&pixels, face.kernels);
+        self.memory.pixels = pixels;
     }
 
     /// Pursues a face, part of F as `of` says, along those rays that do not know its sign: those that are likely to meet it, or all others.

@@ -22,6 +22,9 @@ use crate::{Kernel, Tile};
 /// With more open ones on the way, no others are asked for: it is unlikely that those decide enough.
 const TOO_MANY: usize = 2 * MOST;
 
+/// Beams of more columns or rows are cut where several faces may have to be met before it is known which of them is that of the body.
+const LARGE: usize = 16;
+
 /// One of the functions of which F is made, or F itself, where it may have roots, to first order.
 pub(super) struct Outline {
     /// The number of its kernels.
@@ -115,7 +118,7 @@ impl Subdivision<'_> {
                 self.follow_face(part, &outlines[number]);
                 true
             }
-            Some(made) if outlines.len() <= MOST => {
+            Some(made) if outlines.len() <= MOST && (self.size(part) <= LARGE || made.is_union()) => {
                 let faces: Option<Vec<_>> = outlines.iter().map(|outline| self.face(part, outline)).collect();
                 faces.is_some_and(|faces| self.follow_made(part, &faces, &made))
             }

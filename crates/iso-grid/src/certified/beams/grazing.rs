@@ -18,7 +18,7 @@ use crate::{Kernel, Span, Tile};
 
 /// Second derivatives are asked for beams of so many columns or rows: they say little about larger ones, and a single ray is not worth
 /// it.
-pub(super) const SIZES: RangeInclusive<usize> = 2..=16;
+pub(super) const SIZES: RangeInclusive<usize> = 2..=32;
 
 /// How many powers of two there are up to the largest of these sizes, 1 included.
 const CLASSES: usize = SIZES.end().ilog2() as usize + 1;
@@ -77,16 +77,21 @@ impl Subdivision<'_> {
         let is_followed = self.start_bent(part, face, &mut pixels);
         if is_followed {
             self.pursue(&mut pixels, face.kernels, &face.bow);
-            for (place, end) in pixels.iter().flat_map(Pixels::ends) {
-                match end {
-                    End::Free(_) => {}
-                    End::Hit(hit, _) => self.meet(place, hit, face.kernels),
-                    End::Lost(wanted) => self.search_one(self.position(place), wanted),
-                }
-            }
+            self.settle(&pixels, face.kernels);
         }
         self.memory.pixels = pixels;
         is_followed
+    }
+
+    /// Ends rays that were pursued by kernels of a number, or searches them.
+    pub(super) fn settle(&mut self, pixels: &[Pixels], kernels: u32) {
+        for (place, end) in pixels.iter().flat_map(Pixels::ends) {
+            match end {
+                End::Free(_) => {}
+                End::Hit(hit, _) => self.meet(place, hit, kernels),
+                End::Lost(wanted) => self.search_one(self.position(place), wanted),
+            }
+        }
     }
 
     /// F on a part to first order, where its second derivatives are likely to help.

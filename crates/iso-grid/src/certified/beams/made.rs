@@ -43,6 +43,14 @@ impl Made {
         }
     }
 
+    /// Whether it is negative wherever one of some faces is, so that the first one that a ray meets decides.
+    pub(super) fn is_union(&self) -> bool {
+        match self {
+            Self::Of(Extreme::Least, parts) => parts.iter().all(|part| matches!(part, Self::Face(_))),
+            _ => false,
+        }
+    }
+
     /// Notes the faces that it may be.
     fn note_faces(&self, are_faces: &mut [bool; MOST]) {
         match self {
@@ -56,6 +64,8 @@ impl Made {
 
 /// The sign of F for all signs that its faces may have.
 pub(super) struct Combinations {
+    /// How many faces there are.
+    faces: usize,
     of: [f64; COMBINATIONS],
     /// Whether F is the least or the greatest of each face and what else there may be.
     direct: [Option<Extreme>; MOST],
@@ -66,7 +76,7 @@ pub(super) struct Combinations {
 impl Combinations {
     /// Those of what is made of so many faces.
     pub(super) fn new(made: &Made, faces: usize) -> Self {
-        let mut found = Self { of: [0.0; COMBINATIONS], direct: [None; MOST], are_met: [false; MOST] };
+        let mut found = Self { faces, of: [0.0; COMBINATIONS], direct: [None; MOST], are_met: [false; MOST] };
         made.note_faces(&mut found.are_met);
         for number in 0..3_usize.pow(faces as u32) {
             let mut rest = number;
@@ -91,6 +101,19 @@ impl Combinations {
     #[inline]
     pub(super) fn sign(&self, of_faces: &[f64; MOST]) -> f64 {
         self.of[place_of(of_faces)]
+    }
+
+    /// The face whose sign is not known, if that is one alone, and F has its sign.
+    #[inline]
+    pub(super) fn face_alone(&self, of_faces: &[f64; MOST]) -> Option<usize> {
+        let mut open = (0..self.faces).filter(|number| of_faces[*number] == 0.0);
+        let (face, None) = (open.next()?, open.next()) else { return None };
+        let with = |sign: f64| {
+            let mut signs = *of_faces;
+            signs[face] = sign;
+            self.sign(&signs)
+        };
+        (self.is_met(face) && with(-1.0) < 0.0 && with(1.0) > 0.0).then_some(face)
     }
 
     /// Whether F may be zero where a face is.

@@ -28,15 +28,20 @@ pub(super) trait Signed {
 }
 
 impl Packet {
-    pub(super) fn is_full(&self) -> bool {
-        self.count == ROW
-    }
-
     /// Adds the ray of a place, in a column and a row, to a packet that is not full.
     pub(super) fn push(&mut self, place: usize, (column, row): (usize, usize)) {
         self.places[self.count] = place as u32;
         (self.columns[self.count], self.rows[self.count]) = (column as f64, row as f64);
         self.count += 1;
+    }
+
+    /// Puts one of the rays into other packets.
+    pub(super) fn put_into(&self, packets: &mut Vec<Self>, lane: usize) {
+        let packet = with_room(packets);
+        packet.places[packet.count] = self.places[lane];
+        packet.columns[packet.count] = self.columns[lane];
+        packet.rows[packet.count] = self.rows[lane];
+        packet.count += 1;
     }
 
     /// The places of the rays.
@@ -62,6 +67,15 @@ impl Packet {
     pub(super) fn each(&self, number: f64, other: f64) -> Row {
         std::array::from_fn(|lane| if lane < self.count { number } else { other })
     }
+}
+
+/// The last packet, or a new one where that is full.
+fn with_room(packets: &mut Vec<Packet>) -> &mut Packet {
+    if packets.last().is_none_or(|packet| packet.count == ROW) {
+        packets.push(Packet::default());
+    }
+    let last = packets.len() - 1;
+    &mut packets[last]
 }
 
 /// A stretch for all rays of a packet.
@@ -117,12 +131,7 @@ impl OpenRays<'_> {
                 if !self.open[place] {
                     continue;
                 }
-                if packets.last().is_none_or(Packet::is_full) {
-                    packets.push(Packet::default());
-                }
-                if let Some(packet) = packets.last_mut() {
-                    packet.push(place, (column, row));
-                }
+                with_room(packets).push(place, (column, row));
             }
         }
     }

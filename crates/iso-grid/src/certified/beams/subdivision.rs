@@ -11,6 +11,7 @@ use super::bundle::Bundle;
 use super::edges::Meeting;
 use super::form::Form;
 use super::grazing::Attempts;
+use super::made::MOST;
 use super::packet::Packet;
 use super::pixels::Pixels;
 use super::rounding::Rounding;
@@ -80,6 +81,7 @@ pub(crate) struct Memory {
     pub(super) packets: Vec<Packet>,
     pub(super) pixels: Vec<Pixels>,
     pub(super) meetings: Vec<Meeting>,
+    pub(super) alone: [Vec<Packet>; MOST],
     /// The numbers of meetings that are asked for a face, and where.
     pub(super) asked: Vec<(usize, Span)>,
     /// The hits whose normals are still to be found, each with the number of kernels of a function that has its own.
