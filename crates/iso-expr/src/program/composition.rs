@@ -51,7 +51,7 @@ impl Program {
 
     /// The program of one of its values.
     fn of_value(&self, id: NodeId) -> Self {
-        Self { nodes: self.nodes.clone(), outputs: vec![id], ..Self::new() }.pruned()
+        self.pruned_to(&[id])
     }
 
     /// The least or the greatest of two or more. The negative of a minimum is the maximum of the negatives.

@@ -5,7 +5,12 @@ use super::{Node, NodeId, Program};
 impl Program {
     /// A copy of this program without the nodes that no output needs.
     pub fn pruned(&self) -> Self {
-        let needed = self.needed();
+        self.pruned_to(&self.outputs)
+    }
+
+    /// A copy without the nodes that none of these values needs, which are its outputs.
+    pub(super) fn pruned_to(&self, outputs: &[NodeId]) -> Self {
+        let needed = self.needed_for(outputs);
         let mut pruned = Self::new();
         let mut places = Vec::with_capacity(self.nodes.len());
         for (node, needed) in self.nodes.iter().zip(needed) {
@@ -15,7 +20,7 @@ impl Program {
                 pruned.nodes.push(node.with_operands(|operand| places[operand.index()]));
             }
         }
-        pruned.outputs = self.outputs.iter().map(|output| places[output.index()]).collect();
+        pruned.outputs = outputs.iter().map(|output| places[output.index()]).collect();
         pruned
     }
 
@@ -35,14 +40,15 @@ impl Program {
         other.outputs.iter().map(|output| places[output.index()]).collect()
     }
 
-    /// For each node whether an output is computed from it.
-    fn needed(&self) -> Vec<bool> {
-        let mut needed = vec![false; self.nodes.len()];
-        for output in &self.outputs {
-            needed[output.index()] = true;
+    /// For each node up to the last of these values whether one of them is computed from it.
+    fn needed_for(&self, values: &[NodeId]) -> Vec<bool> {
+        let count = values.iter().map(|value| value.index() + 1).max().unwrap_or(0);
+        let mut needed = vec![false; count];
+        for value in values {
+            needed[value.index()] = true;
         }
-        for (id, node) in self.iter().rev() {
-            if needed[id.index()] {
+        for (place, node) in self.nodes[..count].iter().enumerate().rev() {
+            if needed[place] {
                 for operand in node.operands() {
                     needed[operand.index()] = true;
                 }

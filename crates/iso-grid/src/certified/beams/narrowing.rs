@@ -28,15 +28,6 @@ enum Left {
     Function(u32),
 }
 
-/// What the functions come to on a slab of which one is the least or the greatest.
-#[derive(Clone, Debug, Default)]
-struct Several {
-    /// Whether the sign of one of them is that of all.
-    is_decided: bool,
-    /// The numbers of those that may be zero, or undefined.
-    open: Vec<u32>,
-}
-
 impl Subdivision<'_> {
     /// Keeps slabs that may hold roots, where F is made of functions that say more than F. All lie in the region, where the same kernels hold.
     pub(super) fn keep_by_faces(&mut self, slabs: &mut [Slab]) {
@@ -120,37 +111,45 @@ impl Subdivision<'_> {
         (extreme, faces): (Extreme, &[u32]),
         slabs: &[Slab],
     ) -> [Left; BATCH] {
-        let mut found: [Several; BATCH] = Default::default();
         let is_defined = self.kernels(number).are_defined_everywhere();
+        // What may be zero or undefined is put behind what is there for functions around this one.
+        let first = self.memory.left.len();
+        let mut are_decided = [false; BATCH];
         for face in faces {
-            for (found, left) in found.iter_mut().zip(self.left_of(*face, slabs)) {
+            let found = self.left_of(*face, slabs);
+            for (slab, (left, is_decided)) in found.into_iter().zip(&mut are_decided).enumerate() {
                 match left {
-                    Left::Sign { sign, .. } if sign == deciding(extreme) => found.is_decided = true,
+                    Left::Sign { sign, .. } if sign == deciding(extreme) => *is_decided = true,
                     Left::Sign { is_defined: true, .. } => {}
-                    Left::Sign { is_defined: false, .. } => found.open.push(*face),
-                    Left::Function(left) => found.open.push(left),
+                    Left::Sign { is_defined: false, .. } => self.memory.left.push((slab, *face)),
+                    Left::Function(left) => self.memory.left.push((slab, left)),
                 }
             }
-            if found[..slabs.len()].iter().all(|found| found.is_decided) {
+            if are_decided[..slabs.len()].iter().all(|is_decided| *is_decided) {
                 break;
             }
         }
         let mut left = [Left::Sign { sign: -deciding(extreme), is_defined: true }; BATCH];
-        for (left, Several { is_decided, open }) in left.iter_mut().zip(found).take(slabs.len()) {
+        for (slab, (left, is_decided)) in left.iter_mut().zip(are_decided).enumerate().take(slabs.len()) {
+            let mut open =
+                self.memory.left[first..].iter().filter(|(of, _)| *of == slab).map(|(_, face)| *face);
             if is_decided {
                 *left = Left::Sign { sign: deciding(extreme), is_defined };
-            } else if !open.is_empty() {
-                *left = Left::Function(self.number_of_left(number, (extreme, open)));
+            } else if let Some(face) = open.next() {
+                let others: Vec<_> = open.collect();
+                *left = Left::Function(self.number_of_left(number, (extreme, face, others)));
             }
         }
+        self.memory.left.truncate(first);
         left
     }
 
     /// The number of the least or the greatest of these functions, which the one of a number comes to.
-    fn number_of_left(&mut self, number: u32, (extreme, open): (Extreme, Vec<u32>)) -> u32 {
-        if let [only] = open[..] {
-            return only;
+    fn number_of_left(&mut self, number: u32, (extreme, face, others): (Extreme, u32, Vec<u32>)) -> u32 {
+        if others.is_empty() {
+            return face;
         }
+        let open = std::iter::once(face).chain(others).collect();
         let left = self.number_of(Arc::clone(self.kernels(number)));
         self.faces[left as usize] = Known::OnSlab(Some(Rc::new(Composition::Extreme(extreme, open))));
         left

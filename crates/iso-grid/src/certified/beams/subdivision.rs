@@ -76,6 +76,8 @@ pub(crate) struct Memory {
     /// The beams that the tile was cut into so far.
     pub(super) beams: Vec<Beam>,
     pub(super) slabs: Vec<Slab>,
+    /// Functions that are left of others on slabs, by the slab's number among those that are looked at.
+    pub(super) left: Vec<(usize, u32)>,
     pub(super) attempts: Attempts,
     pub(super) bundles: Vec<Bundle>,
     pub(super) packets: Vec<Packet>,
@@ -84,8 +86,8 @@ pub(crate) struct Memory {
     pub(super) alone: [Vec<Packet>; MOST],
     /// The numbers of meetings that are asked for a face, and where.
     pub(super) asked: Vec<(usize, Span)>,
-    /// The hits whose normals are still to be found, each with the number of kernels of a function that has its own.
-    pub(super) met: Vec<(u32, Asked)>,
+    /// The hits whose normals are still to be found, each with the function that has its own and the number of kernels of that.
+    pub(super) met: Vec<(usize, u32, Asked)>,
     /// What was found out last of rounding.
     pub(super) rounding: Option<Rounding>,
 }
@@ -334,7 +336,8 @@ impl<'a> Subdivision<'a> {
     /// later, with those of others.
     pub(super) fn meet(&mut self, place: usize, hit: Hit, kernels: u32) {
         if self.normals.is_some() {
-            self.memory.met.push((kernels, Asked { place, t: hit.t }));
+            let function = self.kernels(kernels).identity();
+            self.memory.met.push((function, kernels, Asked { place, t: hit.t }));
         }
         self.end(place, Outcome::Hit(hit));
     }
@@ -344,13 +347,12 @@ impl<'a> Subdivision<'a> {
         let Some(normals) = &mut self.normals else { return };
         let Workspace { asked, .. } = &mut *self.workspace;
         let mut asked = std::mem::take(asked);
-        let function = |(kernels, _): &(u32, Asked)| self.kernels[*kernels as usize].identity();
         let met = &mut self.memory.met;
-        met.sort_by_key(function);
-        for met in met.chunk_by(|a, b| function(a) == function(b)) {
-            let kernels = &self.kernels[met[0].0 as usize];
+        met.sort_by_key(|(function, ..)| *function);
+        for met in met.chunk_by(|a, b| a.0 == b.0) {
+            let kernels = &self.kernels[met[0].1 as usize];
             asked.clear();
-            asked.extend(met.iter().map(|(_, asked)| *asked));
+            asked.extend(met.iter().map(|(.., asked)| *asked));
             self.workspace.counters.operations += kernels.charge(Kernel::Gradients, asked.len());
             answer(kernels.over_points(Kernel::Gradients), self.workspace, self.tile, &asked, normals);
         }
