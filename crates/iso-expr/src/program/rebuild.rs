@@ -12,7 +12,8 @@ impl Program {
     pub(super) fn pruned_to(&self, outputs: &[NodeId]) -> Self {
         let needed = self.needed_for(outputs);
         let mut pruned = Self::new();
-        let mut places = Vec::with_capacity(self.nodes.len());
+        pruned.nodes.reserve(needed.iter().filter(|is_needed| **is_needed).count());
+        let mut places = Vec::with_capacity(needed.len());
         for (node, needed) in self.nodes.iter().zip(needed) {
             // What is not needed is never looked up, so that any place will do for it.
             places.push(NodeId(pruned.nodes.len() as u32));
