@@ -10,6 +10,7 @@ use super::bend::Bend;
 use super::bows::Bow;
 use super::course::ways;
 use super::form::{Form, Gradient};
+use super::grazing::LARGE;
 use super::made::{MOST, Made, deciding};
 use super::packet::Packet;
 use super::pixels::Pixels;
@@ -21,9 +22,6 @@ use crate::{Kernel, Tile};
 
 /// With more open ones on the way, no others are asked for: it is unlikely that those decide enough.
 const TOO_MANY: usize = 2 * MOST;
-
-/// Beams of more columns or rows are cut where several faces may have to be met before it is known which of them is that of the body.
-const LARGE: usize = 16;
 
 /// One of the functions of which F is made, or F itself, where it may have roots, to first order.
 pub(super) struct Outline {
@@ -108,6 +106,10 @@ impl Subdivision<'_> {
         }
         let mut outlines = Vec::new();
         let Some(faces) = self.faces_of(part.kernels) else { return false };
+        let is_union = matches!(*faces, Composition::Extreme(Extreme::Least, _));
+        if self.size(part) > LARGE && !is_union {
+            return false;
+        }
         if matches!(*faces, Composition::Choice { .. }) && self.kernels(part.kernels).have_forms() {
             // Those hold across kinks inside a function, and say as much.
             return false;

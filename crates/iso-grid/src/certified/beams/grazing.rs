@@ -20,6 +20,9 @@ use crate::{Kernel, Span, Tile};
 /// it.
 pub(super) const SIZES: RangeInclusive<usize> = 2..=32;
 
+/// Beams of more columns or rows are cut, unless F bends everywhere alike, or is made of functions there of which the first that a ray meets decides.
+pub(super) const LARGE: usize = 16;
+
 /// How many powers of two there are up to the largest of these sizes, 1 included.
 const CLASSES: usize = SIZES.end().ilog2() as usize + 1;
 
@@ -63,7 +66,11 @@ impl Subdivision<'_> {
     pub(super) fn follow_bent(&mut self, part: &Part) -> bool {
         let size = self.size(part);
         let is_known = part.form.slope.radius.is_finite();
-        if !is_known || !self.is_fit(part) || self.memory.attempts.are_vain(size) {
+        if !is_known
+            || !self.is_fit(part)
+            || size > LARGE && !self.bends_evenly(part.kernels)
+            || self.memory.attempts.are_vain(size)
+        {
             return false;
         }
         let face = self.outline(part).and_then(|outline| self.face(part, &outline));
@@ -106,6 +113,13 @@ impl Subdivision<'_> {
     /// Whether second derivatives are likely to help with a part.
     pub(super) fn is_fit(&self, part: &Part) -> bool {
         part.is_inside && SIZES.contains(&self.size(part)) && self.is_short(part.beam, part.form.reach)
+    }
+
+    /// Whether second derivatives are the same everywhere, so that none takes an operation.
+    fn bends_evenly(&self, kernels: u32) -> bool {
+        let kernels = self.kernels(kernels);
+        let [first, second] = [Kernel::GradientEnclosures, Kernel::HessianEnclosures];
+        second.pays(kernels.program()) && kernels.operations(first) == kernels.operations(second)
     }
 
     /// Whether a stretch of a beam is not much longer than the beam is wide.

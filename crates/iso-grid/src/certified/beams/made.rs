@@ -164,6 +164,25 @@ mod tests {
         assert_eq!([0, 1, 2, 3].map(|face| found.is_met(face)), [false, true, true, true]);
     }
 
+    /// A part of a union that is cut: min(max(a, b), c).
+    #[test]
+    fn a_face_is_alone_where_the_sign_of_all_is_its_own() {
+        let cut = Made::Of(Extreme::Greatest, vec![Made::Face(0), Made::Face(1)]);
+        let made = Made::Of(Extreme::Least, vec![cut, Made::Face(2)]);
+        let found = Combinations::new(&made, 3);
+        assert_eq!(found.face_alone(&[0.0, -1.0, 1.0, 0.0]), Some(0));
+        assert_eq!(found.face_alone(&[1.0, -1.0, 0.0, 0.0]), Some(2));
+        // Behind the other side of the cut, and inside the other part, it decides nothing.
+        assert_eq!(found.face_alone(&[0.0, 1.0, 1.0, 0.0]), None);
+        assert_eq!(found.face_alone(&[0.0, -1.0, -1.0, 0.0]), None);
+        assert_eq!(found.face_alone(&[0.0, 0.0, 1.0, 0.0]), None);
+        // What decides between two sides is never met.
+        let limb = Made::Choice(0, Box::new([Made::Face(1), Made::Face(2)]));
+        let found = Combinations::new(&limb, 3);
+        assert_eq!(found.face_alone(&[0.0, -1.0, 1.0, 0.0]), None);
+        assert_eq!(found.face_alone(&[-1.0, 0.0, 1.0, 0.0]), Some(1));
+    }
+
     /// A corner is cut off a union: max(min(a, b, 1), c).
     #[test]
     fn combinations_are_those_of_minima_and_maxima() {
