@@ -37,3 +37,6 @@ mod subdivision;
 
 pub(crate) use subdivision::Memory;
 pub(super) use subdivision::Subdivision;
+
+#[cfg(test)]
+mod tests;

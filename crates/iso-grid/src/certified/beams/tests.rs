@@ -1,0 +1,48 @@
+//! Rays that stand side by side end as they do one by one.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use iso_expr::{Ast, Interpreter};
+use pulp::Arch;
+
+use crate::{Certified, Outcome, Raster, Region, Surface, Tile, Tracer, Workspace};
+
+/// Silhouettes, edges of unions and of intersections, one that is cut, and a limb.
+const FORMULAS: [&str; 5] = [
+    "x^2 + y^2 + z^2 - 1",
+    "min((x - 0.4)^2 + y^2 + z^2 - 0.5, (x + 0.4)^2 + y^2 + z^2 - 0.4)",
+    "max(x^2 + y^2 + z^2 - 1, 0.3 - x^2 - y^2, z - x/3 - 0.4)",
+    "min(max(x^2 + z^2 - 0.4, abs(y) - 0.8), x^2 + y^2 + z^2 - 0.6)",
+    "(x - clamp(x, -0.5, 0.7))^2 + y^2 + (z + x/3)^2 - 0.15",
+];
+
+/// How the rays of a tile end, and their normals' bits.
+fn ends(formula: &str, arch: Arch) -> (Vec<Outcome>, Vec<[u64; 3]>) {
+    let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
+    let surface = Surface::new(Arc::new(Interpreter), program);
+    let region = Region::new(DVec3::splat(-1.5), DVec3::splat(1.5)).unwrap();
+    let certified = Certified::new(&surface, region).unwrap();
+    let raster = Raster::Parallel {
+        middle: DVec3::new(0.3, 0.2, 4.0),
+        right: DVec3::new(0.04, 0.0, 0.01),
+        down: DVec3::new(0.002, 0.04, -0.008),
+        direction: DVec3::new(-0.25, 0.2, -1.0),
+    };
+    let tile = Tile::of(&raster, [-12.0, -32.0], 64, 64);
+    let mut workspace = Workspace { arch, ..Workspace::default() };
+    let mut outcomes = vec![Outcome::Miss; tile.len()];
+    let mut normals = vec![DVec3::NAN; tile.len()];
+    certified.trace_tile(&mut workspace, tile, &mut outcomes, Some(&mut normals));
+    (outcomes, normals.iter().map(|normal| normal.to_array().map(f64::to_bits)).collect())
+}
+
+#[test]
+fn rays_end_alike_whatever_the_processor_computes_with_at_once() {
+    for formula in FORMULAS {
+        let (found, one_by_one) = (ends(formula, Arch::new()), ends(formula, Arch::Scalar));
+        assert_eq!(found, one_by_one, "{formula}");
+        let hits = found.0.iter().filter(|outcome| matches!(outcome, Outcome::Hit(_))).count();
+        assert!((300..3500).contains(&hits), "{formula}: {hits}");
+    }
+}
