@@ -7,7 +7,6 @@ use pulp::Simd;
 
 use super::bows::Bow;
 use super::form::ROUNDING;
-use crate::Span;
 use crate::lanes::{Lanes, Mask};
 
 /// F and its derivatives along rays at some t of each, with bounds of how far they may be off.
@@ -132,13 +131,6 @@ fn if_there<S: Simd>(discriminant: Lanes<S>, way: Lanes<S>) -> Lanes<S> {
 pub(super) fn ways<S: Simd>([start, end]: [Lanes<S>; 2], t: Lanes<S>) -> [Lanes<S>; 2] {
     let more = t.all_be(ROUNDING) * (t + end);
     [start - t - more, end - t + more]
-}
-
-/// The same of a stretch and a t of all rays.
-#[inline(always)]
-pub(super) fn ways_of_all<S: Simd>(simd: S, stretch: Span, t: f64) -> [Lanes<S>; 2] {
-    let all = |number| Lanes::all(simd, number);
-    ways([all(stretch.start), all(stretch.end)], all(t))
 }
 
 /// What no value of `value` + s·w + ½·`curvature`·w² is below for `from` ≤ w ≤ `to`, where s is the first of the slopes for w > 0

@@ -7,8 +7,6 @@ use iso_expr::{Decorated, Interval};
 use pulp::{Simd, WithSimd};
 
 use super::bend::Bend;
-use super::bows::Bow;
-use super::course::ways_of_all;
 use super::faces::{Face, Outline};
 use super::packet::{OpenRays, Packet, Signed, for_all};
 use super::pixels::{End, Pixels};
@@ -172,11 +170,11 @@ impl Subdivision<'_> {
     }
 
     /// The rays of a part that are still followed and may have a root there; says whether not too many may be followed in vain.
-    fn start_bent(&mut self, part: &Part, Face { bend, bow, .. }: &Face, pixels: &mut Vec<Pixels>) -> bool {
+    fn start_bent(&mut self, part: &Part, face: &Face, pixels: &mut Vec<Pixels>) -> bool {
         let arch = self.workspace.arch;
         let Memory { beams, open, packets, .. } = &mut self.memory;
         let rays = OpenRays { area: beams[part.beam as usize].area, open, width: self.tile.width() };
-        let bent = Bent { bend, bow, stretch: part.stretch };
+        let bent = Bent { face, stretch: part.stretch };
         arch.dispatch(Start { rays, tile: &self.tile, bent, packets, pixels })
     }
 }
@@ -190,21 +188,19 @@ struct Start<'a> {
     pixels: &'a mut Vec<Pixels>,
 }
 
-/// A function that bends, or is monotone, on a stretch.
+/// A face on a stretch.
 struct Bent<'a> {
-    bend: &'a Bend,
-    bow: &'a Bow,
+    face: &'a Face,
     stretch: Span,
 }
 
 impl Signed for Bent<'_> {
     #[inline(always)]
     fn signs<S: Simd>(&self, simd: S, middle: &[Row; 2], radii: &[Row; 2]) -> Row {
-        let mut signs = [0.0; ROW];
-        let ways = ways_of_all(simd, self.stretch, self.bend.t);
+        let (mut signs, stretch) = ([0.0; ROW], for_all(self.stretch));
         for part in 0..parts::<S>() {
-            let (middle, radii) = (Lanes::of_both(simd, middle, part), Lanes::of_both(simd, radii, part));
-            self.bend.around(middle, radii).sign_between(ways, self.bow).put(&mut signs, part);
+            let at = |rows| Lanes::of_both(simd, rows, part);
+            self.face.signs(at(middle), at(radii), at(&stretch)).put(&mut signs, part);
         }
         signs
     }
@@ -217,7 +213,7 @@ impl WithSimd for Start<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
         let Self { rays, tile, bent, packets, pixels } = self;
-        let Bent { bend, bow, stretch } = bent;
+        let Bent { face: Face { bend, bow, .. }, stretch } = bent;
         rays.pack(simd, &bent, packets);
         let mut doubtful = 0.0;
         pixels.clear();

@@ -83,6 +83,7 @@ pub(crate) struct Memory {
     pub(super) packets: Vec<Packet>,
     pub(super) pixels: Vec<Pixels>,
     pub(super) meetings: Vec<Meeting>,
+    /// Rays that can meet one face of a body alone, for each face.
     pub(super) alone: [Vec<Packet>; MOST],
     /// The numbers of meetings that are asked for a face, and where.
     pub(super) asked: Vec<(usize, Span)>,
