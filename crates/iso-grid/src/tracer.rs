@@ -43,7 +43,7 @@ pub trait Tracer: Send + Sync {
     /// When the surface's [`Stop`](crate::Stop) is requested, this returns soon, and no outcome means anything.
     fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]);
 
-    /// The same for a tile, row by row.
+    /// The same for a tile, row by row, whose outcomes are all misses to begin with. Says whether any is not one in the end.
     ///
     /// A method may share work between the rays of a tile. What it says of each is as true as if it were traced alone, but
     /// where in its bracket a root is placed, and how wide the bracket is, may depend on the other rays of the tile.
@@ -56,9 +56,10 @@ pub trait Tracer: Send + Sync {
         tile: Tile<'_>,
         outcomes: &mut [Outcome],
         normals: Option<&mut [DVec3]>,
-    ) {
+    ) -> bool {
         let _ = normals;
         self.trace(workspace, &tile.rays().collect::<Vec<_>>(), outcomes);
+        outcomes.iter().any(|outcome| *outcome != Outcome::Miss)
     }
 
     /// A function with the signs of F − C, and its three derivatives, at points of the box with these corners, where the method knows

@@ -155,7 +155,7 @@ struct Tile {
 impl Tile {
     /// Finds out about its pixels, unless work is stopped before that is done.
     fn render(&mut self, scene: &Scene<'_>, size: Size, area: Area) -> Result<(), RenderError> {
-        // Where nothing was found, no normal was.
+        // Where nothing was found before, all are misses and without normals still.
         let is_clear = self.content == Content::Nothing;
         (self.area, self.content) = (area, Content::Unfinished);
         let stop = scene.surface.stop();
@@ -165,23 +165,25 @@ impl Tile {
         let mut watch = Stopwatch::start();
         let Self { workspace, outcomes, normals, .. } = self;
         let rays = scene.camera.tile(area.column, area.row, area.width, area.height);
-        outcomes.resize(rays.len(), Outcome::Miss);
         workspace.counters = Counters::default();
         let are_normals_wanted = scene.plan.runs(Pass::Normals);
         if !is_clear {
+            outcomes.clear();
             normals.clear();
         }
+        outcomes.resize(rays.len(), Outcome::Miss);
         normals.resize(if are_normals_wanted { rays.len() } else { 0 }, DVec3::NAN);
         let on_the_way = are_normals_wanted.then_some(&mut normals[..]);
-        scene.tracer.trace_tile(workspace, rays, outcomes, on_the_way);
+        let is_met = scene.tracer.trace_tile(workspace, rays, outcomes, on_the_way);
         if stop.is_requested() {
             return Ok(());
         }
         self.trace = watch.lap();
-        self.counts = StatusCounts::of(outcomes);
-        let is_empty = self.counts.miss == rays.len() as u64;
-        self.content = if is_empty { Content::Nothing } else { Content::Found };
-        if are_normals_wanted && !is_empty {
+        (self.content, self.counts) = match is_met {
+            true => (Content::Found, StatusCounts::of(outcomes)),
+            false => (Content::Nothing, StatusCounts { miss: rays.len() as u64, ..StatusCounts::default() }),
+        };
+        if are_normals_wanted && is_met {
             iso_grid::normals(
                 scene.plan.followed(scene.surface),
                 Some(scene.tracer),

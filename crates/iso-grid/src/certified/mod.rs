@@ -174,12 +174,16 @@ impl Tracer for Certified {
         tile: Tile<'_>,
         outcomes: &mut [Outcome],
         normals: Option<&mut [DVec3]>,
-    ) {
+    ) -> bool {
         assert_eq!(tile.len(), outcomes.len());
+        debug_assert!(outcomes.iter().all(|outcome| *outcome == Outcome::Miss));
         assert!(normals.as_ref().is_none_or(|normals| normals.len() == tile.len()));
         match Subdivision::new(self, workspace, tile, (outcomes, normals)) {
             Some(subdivision) => subdivision.run(),
-            None => self.trace(workspace, &tile.rays().collect::<Vec<_>>(), outcomes),
+            None => {
+                self.trace(workspace, &tile.rays().collect::<Vec<_>>(), outcomes);
+                outcomes.iter().any(|outcome| *outcome != Outcome::Miss)
+            }
         }
     }
 

@@ -63,7 +63,7 @@ fn trace_by_two(random: &mut Random, program: &Program, stop: &Stop) -> Result<(
     outcomes(sampling.as_ref(), &rays).iter().for_each(check_places);
     let certified = Certified::new(&surface, region)?;
     let alone = outcomes(&certified, &rays);
-    let mut together = alone.clone();
+    let mut together = vec![Outcome::Miss; rays.len()];
     certified.trace_tile(&mut Workspace::default(), Tile::listed(&rays, side), &mut together, None);
     if stop.is_requested() {
         return Err(GridError::Stopped);

@@ -1,5 +1,7 @@
 //! Rays side by side that are followed to their roots where F is monotone.
 
+use std::ops::Range;
+
 use glam::DVec3;
 use iso_expr::{BatchKernel, Scratch};
 use pulp::{Simd, WithSimd};
@@ -76,27 +78,6 @@ pub(super) struct Sight {
 }
 
 impl Bundle {
-    /// The next rays of a tile in place of others, those of them that are open, by their columns and rows: where roots are wanted, and where
-    /// the part's certificate holds.
-    #[inline]
-    pub(super) fn fill(
-        &mut self,
-        rays: &mut impl Iterator<Item = (usize, usize)>,
-        (open, width): (&[bool], usize),
-        [wanted, reach]: [Span; 2],
-    ) {
-        (self.columns, self.rows, self.state) = ([0.0; ROW], [0.0; ROW], [state::FREE; ROW]);
-        self.wanted = [[wanted.start; ROW], [wanted.end; ROW]];
-        self.reach = [[reach.start; ROW], [reach.end; ROW]];
-        for lane in 0..ROW {
-            let Some((column, row)) = rays.next() else { break };
-            let place = row * width + column;
-            self.places[lane] = place as u32;
-            (self.columns[lane], self.rows[lane]) = (column as f64, row as f64);
-            self.state[lane] = if open[place] { state::OPEN } else { state::FREE };
-        }
-    }
-
     /// Narrows where roots are wanted, and where the certificate holds, along each open ray to what is `within`, given its column and row.
     /// A ray without it is left out.
     pub(super) fn clip(&mut self, mut within: impl FnMut(usize, usize) -> Option<[Span; 2]>) {
@@ -132,24 +113,15 @@ impl Bundle {
         (0..ROW).filter(move |lane| is_meant(self.state[*lane])).map(move |lane| (lane, wanted(lane)))
     }
 
-    /// Begins with the rays that may have roots between these two by a model; says whether there are any.
+    /// Begins with its open rays; says whether there are any.
     #[inline(always)]
-    fn begin<S: Simd>(
-        &mut self,
-        simd: S,
-        Start { tile, model, middle, within: [least, most] }: &Start<'_>,
-    ) -> bool {
+    fn begin<S: Simd>(&mut self, simd: S, tile: &Tile<'_>) -> bool {
         let all = |number| Lanes::all(simd, number);
         let mut most_open = all(0.0);
         for part in 0..parts::<S>() {
             let at = |row: &Row| Lanes::of(simd, row, part);
-            let (across, along) = (at(&self.columns) - all(middle.0), at(&self.rows) - all(middle.1));
-            let t = all(model.t) + (across * all(model.by_column) + along * all(model.by_row));
-            let is_far = t.is_less(all(*least)) | all(*most).is_less(t);
-            t.between(at(&self.reach[0]), at(&self.reach[1])).put(&mut self.t, part);
-            let state = is_far.select(all(state::FREE), at(&self.state));
-            state.put(&mut self.state, part);
-            most_open = state.is_same(all(state::OPEN)).select(all(1.0), most_open);
+            at(&self.t).between(at(&self.reach[0]), at(&self.reach[1])).put(&mut self.t, part);
+            most_open = at(&self.state).is_same(all(state::OPEN)).select(all(1.0), most_open);
         }
         let are_open = most_open.greatest() > 0.0;
         if are_open {
@@ -265,9 +237,11 @@ impl Bundle {
     }
 }
 
-/// Where rays of a part begin to be pursued.
+/// How far apart roots of neighbours must be, relative to where they are, so that roundings are much less.
+const DISTINCT: f64 = 1e-9;
+
+/// Where rays of a part are likely to meet the surface.
 pub(super) struct Start<'a> {
-    pub(super) tile: &'a Tile<'a>,
     pub(super) model: &'a Model,
     /// The column and the row that the model counts from.
     pub(super) middle: (f64, f64),
@@ -275,9 +249,92 @@ pub(super) struct Start<'a> {
     pub(super) within: [f64; 2],
 }
 
+impl Start<'_> {
+    /// Whether a ray whose root the model has here has none.
+    #[inline(always)]
+    fn is_far(&self, t: f64) -> bool {
+        let [least, most] = self.within;
+        (t < least) | (most < t)
+    }
+
+    /// Which of so many neighbours in a row may have likely roots, the first so far from the middle: all of those, and a few more.
+    #[inline(always)]
+    fn columns(&self, (across, along): (f64, f64), count: usize) -> Range<usize> {
+        let [least, most] = self.within;
+        let (first, step) = (self.model.at(across, along), self.model.by_column);
+        let is_distinct = DISTINCT * (least.abs() + most.abs() + first.abs()) < step.abs();
+        if !is_distinct {
+            return 0..count;
+        }
+        let ends = [(least - first) / step, (most - first) / step];
+        // One more at both ends makes up for roundings. Casts saturate.
+        let start = (ends[0].min(ends[1]) - 1.0) as usize;
+        let end = (ends[0].max(ends[1]) + 2.0) as usize;
+        start.min(count)..end.min(count)
+    }
+}
+
+/// Bundles that are filled one after the other, so that few lanes stay empty, and pursued together.
+#[derive(Debug, Default)]
+pub(crate) struct Sheaf {
+    bundles: Vec<Bundle>,
+    /// How many rays are in them so far.
+    rays: usize,
+}
+
+impl Sheaf {
+    /// How many rays it holds at most.
+    pub(super) const MOST: usize = AT_ONCE * ROW;
+
+    /// How many more it holds.
+    pub(super) fn room(&self) -> usize {
+        Self::MOST - self.rays
+    }
+
+    /// Adds those of some neighbours in a row of a tile, the first in this column and this place, that are open and may have a root by the
+    /// model. There is room for all.
+    #[inline]
+    pub(super) fn add(
+        &mut self,
+        ((column, row), place): ((usize, usize), usize),
+        open: &[bool],
+        start: &Start<'_>,
+    ) {
+        // One more is written to than is filled.
+        self.bundles.resize(AT_ONCE + 1, Bundle::default());
+        let (across, along) = (column as f64 - start.middle.0, row as f64 - start.middle.1);
+        let mut rays = self.rays;
+        for number in start.columns((across, along), open.len()) {
+            let t = start.model.at(across + number as f64, along);
+            let (bundle, lane) = (&mut self.bundles[rays / ROW], rays % ROW);
+            bundle.places[lane] = (place + number) as u32;
+            (bundle.columns[lane], bundle.rows[lane]) = ((column + number) as f64, row as f64);
+            bundle.t[lane] = t;
+            // Written over by the next unless it is counted, for which of them are cannot be foreseen.
+            rays += usize::from(open[number] & !start.is_far(t));
+        }
+        self.rays = rays;
+    }
+
+    /// Takes out its bundles, for roots that are wanted where the part's certificate holds.
+    pub(super) fn take(&mut self, [wanted, reach]: [Span; 2]) -> &mut [Bundle] {
+        let bundles = &mut self.bundles[..self.rays.div_ceil(ROW)];
+        for bundle in &mut *bundles {
+            bundle.state = [state::OPEN; ROW];
+            bundle.wanted = [[wanted.start; ROW], [wanted.end; ROW]];
+            bundle.reach = [[reach.start; ROW], [reach.end; ROW]];
+        }
+        if let [.., last] = &mut *bundles {
+            last.state[(self.rays - 1) % ROW + 1..].fill(state::FREE);
+        }
+        self.rays = 0;
+        bundles
+    }
+}
+
 /// The pursuit of some rays.
 pub(super) struct Pursuit<'a> {
-    pub(super) start: &'a Start<'a>,
+    pub(super) tile: &'a Tile<'a>,
     pub(super) bundles: &'a mut [Bundle],
     pub(super) sight: &'a Sight,
     pub(super) slopes: &'a dyn BatchKernel,
@@ -310,11 +367,11 @@ impl WithSimd for Pursuit<'_> {
     /// Pursues all rays until they are free, hit or lost.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Taken {
-        let Self { start, bundles, sight, slopes, mut last, points, scratch } = self;
+        let Self { tile, bundles, sight, slopes, mut last, points, scratch } = self;
         let mut taken = Taken::default();
         let (mut open, mut count) = ([0; AT_ONCE], 0);
         for (number, bundle) in bundles.iter_mut().enumerate() {
-            if bundle.begin(simd, start) {
+            if bundle.begin(simd, tile) {
                 open[count] = number;
                 count += 1;
             }

@@ -1,13 +1,11 @@
 //! The roots of single rays of a beam along which F is monotone.
 
 use super::beam::Beam;
-use super::bundle::{AT_ONCE, Bundle, Last, Pursuit, Sight, Start};
+use super::bundle::{Bundle, Last, Pursuit, Sheaf, Sight, Start};
 use super::form::{Form, Model, ROUNDING};
 use super::rounding::Rounding;
 use super::subdivision::{Part, Subdivision};
-use crate::area::Area;
 use crate::certified::clip::Clip;
-use crate::lanes::ROW;
 use crate::{Kernel, Outcome, Span, Workspace};
 
 /// How many times narrower than what is wanted an enclosure must be that rounding of F alone makes wide, so that there is room for the rest.
@@ -108,25 +106,44 @@ impl Subdivision<'_> {
     /// Ends or goes on with each ray of a part by its root there.
     fn follow_each(&mut self, part: &Part, model: &Model) {
         let Some(sight) = self.sight(part) else { return self.search_each(part) };
-        let mut bundles = std::mem::take(&mut self.memory.bundles);
-        let count = self.bundle(part, model, &mut bundles);
-        for bundles in bundles[..count].chunks_mut(AT_ONCE) {
-            self.pursue_bundles(bundles, (part, model), &sight);
-            for bundle in &*bundles {
-                bundle.hits().for_each(|(place, hit)| self.end(place, Outcome::Hit(hit)));
-                for (place, stretch) in bundle.lost() {
-                    self.search_one(self.position(place), stretch);
+        let area = self.beam(part.beam).area;
+        let start = Start { model, middle: area.offset_of_first(), within: model.around(part.stretch) };
+        let mut sheaf = std::mem::take(&mut self.memory.sheaf);
+        for row in area.rows() {
+            for column in area.columns().step_by(Sheaf::MOST) {
+                let count = Sheaf::MOST.min(area.columns().end - column);
+                if sheaf.room() < count {
+                    self.pursue_sheaf(&mut sheaf, part, &sight);
                 }
+                let place = row * self.tile.width() + column;
+                sheaf.add(((column, row), place), &self.memory.open[place..][..count], &start);
             }
         }
-        self.memory.bundles = bundles;
+        self.pursue_sheaf(&mut sheaf, part, &sight);
+        self.memory.sheaf = sheaf;
     }
 
-    /// Follows the rays of no more than [`AT_ONCE`] bundles.
-    fn pursue_bundles(&mut self, bundles: &mut [Bundle], (part, model): (&Part, &Model), sight: &Sight) {
+    /// Ends or goes on with each ray of a sheaf. Those that may have a root so near to a face of the region that no point inside is known
+    /// are searched each for its own.
+    fn pursue_sheaf(&mut self, sheaf: &mut Sheaf, part: &Part, sight: &Sight) {
+        let bundles = sheaf.take([part.stretch, part.form.reach]);
+        if !part.is_inside {
+            bundles
+                .iter_mut()
+                .for_each(|bundle| bundle.clip(|column, row| self.clipped(part, (column, row))));
+        }
+        self.pursue_bundles(bundles, part, sight);
+        for bundle in &*bundles {
+            bundle.hits().for_each(|(place, hit)| self.end(place, Outcome::Hit(hit)));
+            for (place, stretch) in bundle.lost() {
+                self.search_one(self.position(place), stretch);
+            }
+        }
+    }
+
+    /// Follows the rays of no more than [`AT_ONCE`](super::bundle::AT_ONCE) bundles.
+    fn pursue_bundles(&mut self, bundles: &mut [Bundle], part: &Part, sight: &Sight) {
         let kernels = part.kernels;
-        let Area { column, row, .. } = self.beam(part.beam).area;
-        let [across, along] = self.beam(part.beam).radii;
         let Workspace { arch, points, scratch, counters, .. } = &mut *self.workspace;
         let of_part = &self.kernels[kernels as usize];
         let takes_gradients = self.normals.is_some();
@@ -136,14 +153,9 @@ impl Subdivision<'_> {
             Some(normals) if takes_gradients => Last::Gradient(kernel, normals),
             _ => Last::Value(kernel),
         };
-        let start = &Start {
-            tile: &self.tile,
-            model,
-            middle: (column as f64 + across, row as f64 + along),
-            within: model.around(part.stretch),
-        };
         let slopes = of_part.over_points(Kernel::Slopes);
-        let taken = arch.dispatch(Pursuit { start, bundles, sight, slopes, last, points, scratch });
+        let taken =
+            arch.dispatch(Pursuit { tile: &self.tile, bundles, sight, slopes, last, points, scratch });
         counters.trace_evaluations += (taken.slopes + taken.last) as u64;
         if takes_gradients {
             counters.gradient_evaluations += taken.last as u64;
@@ -170,38 +182,9 @@ impl Subdivision<'_> {
         sight(&exact, self.beam(part.beam))
     }
 
-    /// Bundles the rays of a part that are still followed, and counts the bundles. Those that may have a root so near to a face of
-    /// the region that no point inside is known are searched each for its own.
-    fn bundle(&mut self, part: &Part, model: &Model, bundles: &mut Vec<Bundle>) -> usize {
-        let area = self.beam(part.beam).area;
-        let count = (area.width * area.height).div_ceil(ROW);
-        bundles.resize_with(bundles.len().max(count), Bundle::default);
-        let mut rays = area.rows().flat_map(|row| area.columns().map(move |column| (column, row)));
-        for bundle in &mut bundles[..count] {
-            let open = (&self.memory.open[..], self.tile.width());
-            bundle.fill(&mut rays, open, [part.stretch, part.form.reach]);
-            if !part.is_inside {
-                bundle.clip(|column, row| {
-                    let (a, b) = area.offset(column, row);
-                    self.clipped(part, (column, row), (model, model.at(a, b)))
-                });
-            }
-        }
-        count
-    }
-
-    /// Where a ray may have its root inside the region, which is about at `t` by the model, and where the part's certificate holds
-    /// there. `None` when it has none, or was searched.
-    fn clipped(
-        &mut self,
-        part: &Part,
-        (column, row): (usize, usize),
-        (model, t): (&Model, f64),
-    ) -> Option<[Span; 2]> {
-        let [least, most] = model.around(part.stretch);
-        if t < least || most < t {
-            return None;
-        }
+    /// Where a ray may have its root inside the region, and where the part's certificate holds there. `None` when it has none, or was
+    /// searched.
+    fn clipped(&mut self, part: &Part, (column, row): (usize, usize)) -> Option<[Span; 2]> {
         let Clip { outer, inner } = Clip::new(&self.certified.region, &self.tile.ray(column, row))?;
         let (wanted, reach) = (common(part.stretch, outer), common(part.form.reach, inner));
         if wanted.start > wanted.end {

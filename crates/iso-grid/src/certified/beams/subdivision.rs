@@ -7,7 +7,7 @@ use glam::DVec3;
 use iso_expr::{Composition, Decorated};
 
 use super::beam::{Beam, count_in};
-use super::bundle::Bundle;
+use super::bundle::Sheaf;
 use super::edges::Meeting;
 use super::form::Form;
 use super::grazing::Attempts;
@@ -79,7 +79,7 @@ pub(crate) struct Memory {
     /// Functions that are left of others on slabs, by the slab's number among those that are looked at.
     pub(super) left: Vec<(usize, u32)>,
     pub(super) attempts: Attempts,
-    pub(super) bundles: Vec<Bundle>,
+    pub(super) sheaf: Sheaf,
     pub(super) packets: Vec<Packet>,
     pub(super) pixels: Vec<Pixels>,
     pub(super) meetings: Vec<Meeting>,
@@ -136,7 +136,6 @@ impl<'a> Subdivision<'a> {
         }
         workspace.counters.rays += tile.len() as u64;
         workspace.counters.rays_in_region += count_in(&certified.region, &tile, area);
-        outcomes.fill(Outcome::Miss);
         let mut memory = std::mem::take(&mut workspace.tile);
         memory.ahead.clear();
         memory.beams.clear();
@@ -162,8 +161,8 @@ impl<'a> Subdivision<'a> {
         })
     }
 
-    /// Says of every ray how its search ends.
-    pub(in crate::certified) fn run(mut self) {
+    /// Says of every ray how its search ends, and whether any ends elsewhere than in a miss.
+    pub(in crate::certified) fn run(mut self) -> bool {
         if let Some(stretch) = self.passage() {
             self.least_overlap = LEAST_OVERLAP * stretch.end;
             let form = Form::unknown(stretch);
@@ -190,7 +189,9 @@ impl<'a> Subdivision<'a> {
             }
         }
         self.put_normals();
+        let is_missed = self.memory.open.iter().fold(true, |all, is_open| all & is_open);
         self.workspace.tile = self.memory;
+        !is_missed
     }
 
     /// A stretch that holds all of the tile's rays inside the region; `None` when they miss it.

@@ -1,6 +1,7 @@
 //! Rays that look for spheres, and planes.
 
 use glam::DVec3;
+use iso_expr::random::Random;
 use iso_expr::{Ast, Engine, Interpreter};
 use pulp::{Arch, Scalar};
 
@@ -28,9 +29,12 @@ fn ends_on_a_sphere(with_normals: bool, run: impl Fn(Pursuit<'_>) -> Taken) -> E
     let tile = Tile::of(&raster, [-3.5, -3.5], 8, 8);
     let model = Model { t: 4.1, by_column: 0.0, by_row: 0.0, uncertainty: 0.2 };
     let sight = Sight { inverse: -0.5, unevenness: 0.3, bend: 0.5, blur: 1e-15, tolerance: 1e-12 };
-    let mut bundles = vec![Bundle::default(); 9];
-    for (row, bundle) in bundles.iter_mut().enumerate().take(8) {
-        bundle.fill(&mut (0..8).map(|column| (column, row)), (&[true; 64], 8), [Span::default(); 2]);
+    let within = model.around(Span { start: 4.0, end: 4.4 });
+    let start = Start { model: &model, middle: (3.5, 3.5), within };
+    let mut sheaf = Sheaf::default();
+    (0..8).for_each(|row| sheaf.add(((0, row), 8 * row), &[true; 8], &start));
+    let bundles = sheaf.take([Span::default(); 2]);
+    for bundle in &mut *bundles {
         bundle.clip(|column, row| {
             // The last row's roots lie before what is wanted, the fifth's before where F may be looked at, and the sixth's right
             // before that.
@@ -45,20 +49,14 @@ fn ends_on_a_sphere(with_normals: bool, run: impl Fn(Pursuit<'_>) -> Taken) -> E
             ((row, column) != (2, 3)).then_some([wanted, reach])
         });
     }
-    let start = &Start {
-        tile: &tile,
-        model: &model,
-        middle: (3.5, 3.5),
-        within: model.around(Span { start: 4.0, end: 4.4 }),
-    };
     let [values, slopes, gradients] = [program.clone(), program.with_slope(), program.with_gradient()]
         .map(|program| Interpreter.batch(&program.simplified()).unwrap());
     let mut normals = vec![DVec3::NAN; tile.len()];
     let last = if with_normals { Last::Gradient(&*gradients, &mut normals) } else { Last::Value(&*values) };
     let (mut points, mut scratch) = (PointBatch::default(), Scratch::default());
     let taken = run(Pursuit {
-        start,
-        bundles: &mut bundles,
+        tile: &tile,
+        bundles,
         sight: &sight,
         slopes: &*slopes,
         last,
@@ -77,8 +75,11 @@ fn ends_on_a_sphere(with_normals: bool, run: impl Fn(Pursuit<'_>) -> Taken) -> E
 fn normals_are_those_of_gradients_next_to_the_hit_alone() {
     let simd = Scalar::new();
     let (wanted, reach) = (Span { start: 0.5, end: 1.5 }, Span { start: 0.0, end: 2.0 });
-    let mut bundle = Bundle::default();
-    bundle.fill(&mut [(1, 0)].into_iter(), (&[true; 2], 2), [wanted, reach]);
+    let mut sheaf = Sheaf::default();
+    let model = Model { t: 1.0, by_column: 0.0, by_row: 0.0, uncertainty: 0.1 };
+    let start = Start { model: &model, middle: (0.0, 0.0), within: model.around(wanted) };
+    sheaf.add(((1, 0), 1), &[true], &start);
+    let [bundle] = sheaf.take([wanted, reach]) else { panic!("one ray is one bundle") };
     // F is t − 1, and was not taken near its root.
     (bundle.t[0], bundle.inverse[0]) = (1.0 + 1e-6, 1.0);
     let sight = Sight { inverse: 1.0, unevenness: 1e-9, bend: 1e-9, blur: 0.0, tolerance: 1e-12 };
@@ -129,4 +130,49 @@ fn rays_end_where_they_meet_the_sphere_on_any_processor() {
             }
         }
     }
+}
+
+#[test]
+fn bundles_hold_the_open_rays_that_are_likely_to_meet_the_surface_and_no_others() {
+    let mut random = Random::new(5);
+    let mut sheaf = Sheaf::default();
+    let [mut fewest, mut most] = [usize::MAX, 0];
+    for round in 0..2000 {
+        let width = 1 + random.below(70);
+        let mut steps = [(); 2].map(|()| random.between(-1.0, 1.0) * 10_f64.powi(-(random.below(18) as i32)));
+        steps[round % 2] *= f64::from(u8::from(round % 5 > 0));
+        let [by_column, by_row] = steps;
+        let t = if round % 50 == 0 { f64::NAN } else { random.between(4.0, 6.0) };
+        let uncertainty = random.between(0.0, 0.3);
+        let model = match round % 40 {
+            // All on the edge, as far as doubles tell.
+            1 => Model { t: 5.0, by_column: -1e-18, by_row: 0.0, uncertainty: 0.0 },
+            _ => Model { t, by_column, by_row, uncertainty },
+        };
+        let stretch = Span { start: 5.0, end: random.between(5.0, 6.0) };
+        let start = Start { model: &model, middle: (20.5, 3.5), within: model.around(stretch) };
+        let open: Vec<_> = (0..width).map(|_| random.below(4) > 0).collect();
+        let (mut expected, mut found) = (Vec::new(), Vec::new());
+        for row in 0..3 {
+            let first = 7 + row;
+            sheaf.add(((first, row), 100 * row), &open, &start);
+            expected.extend((0..width).filter(|number| open[*number]).filter_map(|number| {
+                let t = model.at((first + number) as f64 - 20.5, row as f64 - 3.5);
+                let [least, most] = model.around(stretch);
+                let is_far = t < least || most < t;
+                (!is_far).then_some((100 * row + number, first + number, row, t.to_bits()))
+            }));
+        }
+        assert_eq!(sheaf.room(), Sheaf::MOST - expected.len());
+        for bundle in sheaf.take([stretch; 2]) {
+            assert!(bundle.state[0] == state::OPEN && bundle.wanted == bundle.reach);
+            found.extend((0..ROW).filter(|lane| bundle.state[*lane] == state::OPEN).map(|lane| {
+                let [column, row] = [bundle.columns[lane] as usize, bundle.rows[lane] as usize];
+                (bundle.places[lane] as usize, column, row, bundle.t[lane].to_bits())
+            }));
+        }
+        assert_eq!(found, expected, "{model:?}, {stretch:?}");
+        (fewest, most) = (fewest.min(found.len()), most.max(found.len()));
+    }
+    assert!(fewest == 0 && most > 100, "{fewest}..{most}");
 }
