@@ -242,14 +242,24 @@ const DISTINCT: f64 = 1e-9;
 
 /// Where rays of a part are likely to meet the surface.
 pub(super) struct Start<'a> {
-    pub(super) model: &'a Model,
+    model: &'a Model,
     /// The column and the row that the model counts from.
-    pub(super) middle: (f64, f64),
+    middle: (f64, f64),
     /// By the model, roots lie between these.
-    pub(super) within: [f64; 2],
+    within: [f64; 2],
+    /// How many columns there are to a unit of t, if roots of neighbours are distinct.
+    columns: Option<f64>,
 }
 
-impl Start<'_> {
+impl<'a> Start<'a> {
+    /// By a model that counts from this column and row, where roots are wanted in a stretch.
+    pub(super) fn new(model: &'a Model, middle: (f64, f64), stretch: Span) -> Self {
+        let within = model.around(stretch);
+        let most = DISTINCT * (within[0].abs() + within[1].abs());
+        let are_distinct = most < model.by_column.abs();
+        Self { model, middle, within, columns: are_distinct.then(|| 1.0 / model.by_column) }
+    }
+
     /// Whether a ray whose root the model has here has none.
     #[inline(always)]
     fn is_far(&self, t: f64) -> bool {
@@ -261,12 +271,9 @@ impl Start<'_> {
     #[inline(always)]
     fn columns(&self, (across, along): (f64, f64), count: usize) -> Range<usize> {
         let [least, most] = self.within;
-        let (first, step) = (self.model.at(across, along), self.model.by_column);
-        let is_distinct = DISTINCT * (least.abs() + most.abs() + first.abs()) < step.abs();
-        if !is_distinct {
-            return 0..count;
-        }
-        let ends = [(least - first) / step, (most - first) / step];
+        let first = self.model.at(across, along);
+        let Some(columns) = self.columns.filter(|_| first.is_finite()) else { return 0..count };
+        let ends = [columns * (least - first), columns * (most - first)];
         // One more at both ends makes up for roundings. Casts saturate.
         let start = (ends[0].min(ends[1]) - 1.0) as usize;
         let end = (ends[0].max(ends[1]) + 2.0) as usize;
@@ -300,8 +307,10 @@ impl Sheaf {
         open: &[bool],
         start: &Start<'_>,
     ) {
-        // One more is written to than is filled.
-        self.bundles.resize(AT_ONCE + 1, Bundle::default());
+        if self.bundles.is_empty() {
+            // One more is written to than is filled.
+            self.bundles = vec![Bundle::default(); AT_ONCE + 1];
+        }
         let (across, along) = (column as f64 - start.middle.0, row as f64 - start.middle.1);
         let mut rays = self.rays;
         for number in start.columns((across, along), open.len()) {

@@ -22,7 +22,7 @@ const DOUBTFUL: usize = 16;
 
 /// Rounding that moves roots so many times less than the tolerance does not matter much: an enclosure has room for it on both sides, and as
 /// much is left.
-const SHARP: f64 = 4.0;
+const SHARP: f64 = 2.5;
 
 impl Sight {
     /// `None` where nothing is known, or where roundings of F alone make enclosures wider than `tolerance`.
@@ -107,7 +107,7 @@ impl Subdivision<'_> {
     fn follow_each(&mut self, part: &Part, model: &Model) {
         let Some(sight) = self.sight(part) else { return self.search_each(part) };
         let area = self.beam(part.beam).area;
-        let start = Start { model, middle: area.offset_of_first(), within: model.around(part.stretch) };
+        let start = Start::new(model, area.offset_of_first(), part.stretch);
         let mut sheaf = std::mem::take(&mut self.memory.sheaf);
         for row in area.rows() {
             for column in area.columns().step_by(Sheaf::MOST) {

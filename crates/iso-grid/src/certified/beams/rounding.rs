@@ -10,7 +10,7 @@ use super::subdivision::Subdivision;
 use crate::{Kernel, Span};
 
 /// How many times its size a box for which rounding is bounded grows at each side, so that it holds neighbours too.
-const AROUND: f64 = 2.0;
+const AROUND: f64 = 1.5;
 
 /// What rounding does to F on a box.
 #[derive(Clone, Copy, Debug)]

@@ -29,8 +29,7 @@ fn ends_on_a_sphere(with_normals: bool, run: impl Fn(Pursuit<'_>) -> Taken) -> E
     let tile = Tile::of(&raster, [-3.5, -3.5], 8, 8);
     let model = Model { t: 4.1, by_column: 0.0, by_row: 0.0, uncertainty: 0.2 };
     let sight = Sight { inverse: -0.5, unevenness: 0.3, bend: 0.5, blur: 1e-15, tolerance: 1e-12 };
-    let within = model.around(Span { start: 4.0, end: 4.4 });
-    let start = Start { model: &model, middle: (3.5, 3.5), within };
+    let start = Start::new(&model, (3.5, 3.5), Span { start: 4.0, end: 4.4 });
     let mut sheaf = Sheaf::default();
     (0..8).for_each(|row| sheaf.add(((0, row), 8 * row), &[true; 8], &start));
     let bundles = sheaf.take([Span::default(); 2]);
@@ -77,7 +76,7 @@ fn normals_are_those_of_gradients_next_to_the_hit_alone() {
     let (wanted, reach) = (Span { start: 0.5, end: 1.5 }, Span { start: 0.0, end: 2.0 });
     let mut sheaf = Sheaf::default();
     let model = Model { t: 1.0, by_column: 0.0, by_row: 0.0, uncertainty: 0.1 };
-    let start = Start { model: &model, middle: (0.0, 0.0), within: model.around(wanted) };
+    let start = Start::new(&model, (0.0, 0.0), wanted);
     sheaf.add(((1, 0), 1), &[true], &start);
     let [bundle] = sheaf.take([wanted, reach]) else { panic!("one ray is one bundle") };
     // F is t − 1, and was not taken near its root.
@@ -150,7 +149,7 @@ fn bundles_hold_the_open_rays_that_are_likely_to_meet_the_surface_and_no_others(
             _ => Model { t, by_column, by_row, uncertainty },
         };
         let stretch = Span { start: 5.0, end: random.between(5.0, 6.0) };
-        let start = Start { model: &model, middle: (20.5, 3.5), within: model.around(stretch) };
+        let start = Start::new(&model, (20.5, 3.5), stretch);
         let open: Vec<_> = (0..width).map(|_| random.below(4) > 0).collect();
         let (mut expected, mut found) = (Vec::new(), Vec::new());
         for row in 0..3 {
