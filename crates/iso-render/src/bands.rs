@@ -6,6 +6,7 @@ use std::sync::Mutex;
 use bytemuck::cast_slice_mut;
 use glam::{DVec3, Vec3};
 use iso_grid::Outcome;
+use pulp::Arch;
 
 use crate::{Picture, Status};
 
@@ -55,9 +56,12 @@ impl<'a> Band<'a> {
         if !self.is_clear {
             self.is_clear = true;
             self.coverage.fill(0);
-            self.depth.fill(f64::NAN);
-            cast_slice_mut::<Vec3, f32>(self.normals).fill(f32::NAN);
-            cast_slice_mut::<DVec3, f64>(self.points).fill(f64::NAN);
+            // As widely as the processor writes.
+            Arch::new().dispatch(|| {
+                self.depth.fill(f64::NAN);
+                cast_slice_mut::<Vec3, f32>(self.normals).fill(f32::NAN);
+                cast_slice_mut::<DVec3, f64>(self.points).fill(f64::NAN);
+            });
             self.statuses.fill(Status::Miss);
             self.outcomes.fill(Outcome::Miss);
         }

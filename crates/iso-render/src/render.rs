@@ -232,29 +232,31 @@ impl Tile {
             self.fill_layer(Status::Unfinished, band.statuses, size);
             return;
         }
-        self.put_layer(band.color, size, |place| color[place]);
+        self.put_layer(band.color, size, color.iter().copied());
         if self.content == Content::Found {
-            let point = |place: usize, t| {
+            let point = |(place, outcome)| {
                 let (column, row) = (place as u32 % area.width, place as u32 / area.width);
-                camera.ray(area.column + column, area.row + row).at(t)
+                let at = |t| camera.ray(area.column + column, area.row + row).at(t);
+                found(outcome).map_or(DVec3::NAN, at)
             };
-            let is_covered = |place: usize| Status::from(&outcomes[place]) != Status::Miss;
-            self.put_layer(band.coverage, size, |place| if is_covered(place) { u8::MAX } else { 0 });
-            self.put_layer(band.depth, size, |place| found(&outcomes[place]).unwrap_or(f64::NAN));
-            self.put_layer(band.normals, size, |place| normals[place].as_vec3());
-            self.put_layer(band.points, size, |place| {
-                found(&outcomes[place]).map_or(DVec3::NAN, |t| point(place, t))
-            });
-            self.put_layer(band.statuses, size, |place| Status::from(&outcomes[place]));
-            self.put_layer(band.outcomes, size, |place| outcomes[place]);
+            let coverage = |outcome| if Status::from(outcome) == Status::Miss { 0 } else { u8::MAX };
+            self.put_layer(band.coverage, size, outcomes.iter().map(coverage));
+            self.put_layer(
+                band.depth,
+                size,
+                outcomes.iter().map(|outcome| found(outcome).unwrap_or(f64::NAN)),
+            );
+            self.put_layer(band.normals, size, normals.iter().map(|normal| normal.as_vec3()));
+            self.put_layer(band.points, size, outcomes.iter().enumerate().map(point));
+            self.put_layer(band.statuses, size, outcomes.iter().map(Status::from));
+            self.put_layer(band.outcomes, size, outcomes.iter().copied());
         }
     }
 
     /// Puts what is known of each of the tile's pixels into one layer, if the picture keeps it.
-    fn put_layer<T>(&self, layer: &mut [T], size: Size, pixel: impl Fn(usize) -> T) {
-        for (line, row) in self.rows(layer, size).enumerate() {
-            let first = line * row.len();
-            row.iter_mut().enumerate().for_each(|(column, place)| *place = pixel(first + column));
+    fn put_layer<T>(&self, layer: &mut [T], size: Size, mut pixels: impl Iterator<Item = T>) {
+        for row in self.rows(layer, size) {
+            row.iter_mut().zip(&mut pixels).for_each(|(place, pixel)| *place = pixel);
         }
     }
 
