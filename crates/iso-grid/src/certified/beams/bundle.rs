@@ -28,7 +28,7 @@ pub(crate) struct Bundle {
     wanted: [Row; 2],
     /// Where F is to be taken next, inside `reach`. In the end, about where the root is.
     t: Row,
-    /// F at the last place where its slope was taken, NaN where there was none, one over the slope, and how far t is from there.
+    /// F at the last place where its slope was taken, one over the slope, and how far t is from there.
     value: Row,
     inverse: Row,
     step: Row,
@@ -126,7 +126,7 @@ impl Bundle {
         let are_open = most_open.greatest() > 0.0;
         if are_open {
             self.rays = tile.row(simd, &self.columns, &self.rows);
-            (self.value, self.step) = ([f64::NAN; ROW], [f64::INFINITY; ROW]);
+            self.step = [f64::INFINITY; ROW];
         }
         are_open
     }
@@ -135,7 +135,12 @@ impl Bundle {
     /// roots in reach lie in its result, and if that lies in reach itself, there is one. Where it is about, the slopes of F at t tell, or
     /// the last ones. Says what is needed next.
     #[inline(always)]
-    fn look<S: Simd>(&mut self, simd: S, values: &Row, slopes: Option<&Row>, sight: &Sight) -> Need {
+    fn look<S: Simd>(
+        &mut self,
+        simd: S,
+        (values, slopes): (&Row, Option<&Row>),
+        (sight, is_first): (&Sight, bool),
+    ) -> Need {
         let all = |number| Lanes::all(simd, number);
         let [free, open] = [all(state::FREE), all(state::OPEN)];
         let [hit, lost] = [all(state::HIT), all(state::LOST)];
@@ -158,7 +163,7 @@ impl Bundle {
             let is_inside = reach[0].is_at_most(root[0]) & root[1].is_at_most(reach[1]);
 
             let nearer = match slopes {
-                Some(slopes) => self.interpolate((simd, part), [t, value, at(slopes)], sight),
+                Some(slopes) => self.interpolate((simd, part), [t, value, at(slopes)], (sight, is_first)),
                 None => t - value * at(&self.inverse),
             };
             let next = nearer.between(reach[0], reach[1]);
@@ -179,7 +184,9 @@ impl Bundle {
             let follows = is_found.select(nearer.between(root[0], root[1]), next);
             let follows = was_open.select(follows, t);
             follows.put(&mut self.t, part);
-            (follows - t).abs().put(&mut self.moved, part);
+            if slopes.is_none() {
+                (follows - t).abs().put(&mut self.moved, part);
+            }
             for (end, side) in self.wanted.iter_mut().enumerate() {
                 is_found.select(root[end], wanted[end]).put(side, part);
             }
@@ -199,7 +206,7 @@ impl Bundle {
         &mut self,
         (simd, part): (S, usize),
         [t, value, slope]: [Lanes<S>; 3],
-        sight: &Sight,
+        (sight, is_first): (&Sight, bool),
     ) -> Lanes<S> {
         let [last, before, step] =
             [&self.value, &self.inverse, &self.step].map(|row| Lanes::of(simd, row, part));
@@ -216,6 +223,9 @@ impl Bundle {
         let bend =
             share * (value * (inverse - secant) - last * share * (before + inverse - (secant + secant)));
         let linear = value * inverse;
+        if is_first {
+            return t - linear;
+        }
         // A bend is a small correction, and none is known before the second value.
         let is_small = (bend + bend).abs().is_less(linear.abs());
         is_small.select(t - linear + bend, t - linear)
@@ -386,7 +396,7 @@ impl WithSimd for Pursuit<'_> {
             }
         }
         let mut need = Need::Slopes;
-        for _ in 0..STEPS {
+        for step in 0..STEPS {
             if count == 0 {
                 break;
             }
@@ -396,7 +406,9 @@ impl WithSimd for Pursuit<'_> {
             }
             let found = match (need, &last) {
                 (Need::Slopes, _) => {
-                    for (directions, number) in points.rows_of_directions(count).zip(&open) {
+                    // Those of parallel rays are there since the first step.
+                    let put = if step == 0 || tile.direction().is_none() { count } else { 0 };
+                    for (directions, number) in points.rows_of_directions(count).zip(&open[..put]) {
                         for (to, from) in directions.into_iter().zip(&bundles[*number].rays.directions) {
                             *to = *from;
                         }
@@ -413,7 +425,7 @@ impl WithSimd for Pursuit<'_> {
                 let number = open[place];
                 let bundle = &mut bundles[number];
                 let slopes = (need == Need::Slopes).then(|| &rows[count + place]);
-                let next = bundle.look(simd, &rows[place], slopes, sight);
+                let next = bundle.look(simd, (&rows[place], slopes), (sight, step == 0));
                 if let (Need::Last, Last::Gradient(_, normals)) = (need, &mut last) {
                     let gradients = [1, 2, 3].map(|axis| &rows[axis * count + place]);
                     bundle.put_normals(simd, (gradients, sight.tolerance), normals);

@@ -4,7 +4,7 @@ use super::beam::Beam;
 use super::bundle::{Bundle, Last, Pursuit, Sheaf, Sight, Start};
 use super::form::{Form, Model, ROUNDING};
 use super::rounding::Rounding;
-use super::subdivision::{Part, Subdivision};
+use super::subdivision::{Part, SMALLEST, Subdivision};
 use crate::certified::clip::Clip;
 use crate::{Kernel, Outcome, Span, Workspace};
 
@@ -105,7 +105,10 @@ impl Subdivision<'_> {
 
     /// Ends or goes on with each ray of a part by its root there.
     fn follow_each(&mut self, part: &Part, model: &Model) {
-        let Some(sight) = self.sight(part) else { return self.search_each(part) };
+        let Some(sight) = self.sight(part) else {
+            let is_smallest = self.size(part) <= SMALLEST;
+            return if is_smallest { self.search_each(part) } else { self.divide_beam(part) };
+        };
         let area = self.beam(part.beam).area;
         let start = Start::new(model, area.offset_of_first(), part.stretch);
         let mut sheaf = std::mem::take(&mut self.memory.sheaf);

@@ -33,7 +33,7 @@ const SLICES: usize = BATCH;
 const LONG: f64 = 1.5;
 
 /// Beams of so many columns and rows are not cut further, and left to their rays where F is not monotone.
-const SMALLEST: usize = 2;
+pub(super) const SMALLEST: usize = 2;
 
 /// How many boxes may be enclosed for each ray of a tile before the rest is left to single rays.
 const WORK_LIMIT: u64 = 64;

@@ -86,7 +86,7 @@ fn normals_are_those_of_gradients_next_to_the_hit_alone() {
     let mut normals = [DVec3::NAN; 3];
     for expected in [DVec3::NAN, DVec3::X] {
         let value = [bundle.t[0] - 1.0; ROW];
-        assert_eq!(bundle.look(simd, &value, None, &sight), Need::Nothing, "the root is proven");
+        assert_eq!(bundle.look(simd, (&value, None), (&sight, false)), Need::Nothing, "the root is proven");
         bundle.put_normals(simd, ([&x, &yz, &yz], sight.tolerance), &mut normals);
         assert_eq!(normals[1].to_array().map(f64::to_bits), expected.to_array().map(f64::to_bits));
     }
