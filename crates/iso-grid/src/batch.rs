@@ -182,13 +182,14 @@ pub(crate) struct BoxBatch {
 
 impl BoxBatch {
     /// The boxes with these lower and upper corners, in place of all others.
-    pub(crate) fn replace(&mut self, corners: impl Iterator<Item = (DVec3, DVec3)> + Clone) {
-        for axis in 0..3 {
-            let (lo, hi) = (&mut self.lo[axis], &mut self.hi[axis]);
-            lo.clear();
-            lo.extend(corners.clone().map(|(lo, _)| lo[axis]));
-            hi.clear();
-            hi.extend(corners.clone().map(|(_, hi)| hi[axis]));
+    #[inline]
+    pub(crate) fn replace(&mut self, corners: impl Iterator<Item = (DVec3, DVec3)>) {
+        self.lo.iter_mut().chain(&mut self.hi).for_each(Vec::clear);
+        for (lo, hi) in corners {
+            for axis in 0..3 {
+                self.lo[axis].push(lo[axis]);
+                self.hi[axis].push(hi[axis]);
+            }
         }
     }
 
@@ -199,18 +200,20 @@ impl BoxBatch {
     /// Encloses all `outputs` of the kernel over all boxes.
     pub(crate) fn evaluate(&mut self, kernel: &dyn BoxKernel, scratch: &mut Scratch, outputs: usize) {
         let room = outputs * self.len();
-        self.found_lo.resize(room, f64::NAN);
-        self.found_hi.resize(room, f64::NAN);
-        self.decoration.resize(room, Decoration::Trivial);
+        if self.decoration.len() < room {
+            self.found_lo.resize(room, f64::NAN);
+            self.found_hi.resize(room, f64::NAN);
+            self.decoration.resize(room, Decoration::Trivial);
+        }
         if room > 0 {
             let boxes = Boxes {
                 lo: self.lo.each_ref().map(Vec::as_slice),
                 hi: self.hi.each_ref().map(Vec::as_slice),
             };
             let enclosures = Enclosures {
-                lo: &mut self.found_lo,
-                hi: &mut self.found_hi,
-                decoration: &mut self.decoration,
+                lo: &mut self.found_lo[..room],
+                hi: &mut self.found_hi[..room],
+                decoration: &mut self.decoration[..room],
             };
             kernel.evaluate(scratch, boxes, enclosures);
         }

@@ -78,7 +78,7 @@ impl Signed for Body<'_> {
                 face.signs(at(middle), at(radii), at(&asked)).put(signs, part);
             }
         }
-        std::array::from_fn(|lane| self.made.sign(&of_faces.map(|signs| signs[lane])))
+        self.made.signs(simd, &of_faces)
     }
 }
 
@@ -94,11 +94,12 @@ impl WithSimd for Survey<'_> {
         let mut doubtful = 0.0;
         for packet in packets {
             let outlook = body.outlook(simd, packet, rays.area);
+            let of_body = body.made.signs(simd, &outlook.signs);
             for (lane, place) in packet.places().enumerate() {
-                let signs = outlook.signs.map(|signs| signs[lane]);
-                if body.made.sign(&signs) != 0.0 {
+                if of_body[lane] != 0.0 {
                     continue;
                 }
+                let signs = outlook.signs.map(|signs| signs[lane]);
                 doubtful += 1.0 - outlook.is_likely[lane];
                 if let Some(face) = body.made.face_alone(&signs) {
                     packet.put_into(&mut alone[face], lane);

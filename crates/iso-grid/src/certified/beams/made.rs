@@ -1,6 +1,9 @@
 //! How F is made of smooth functions by minima and maxima.
 
 use iso_expr::Extreme;
+use pulp::Simd;
+
+use crate::lanes::{Lanes, ROW, Row, parts};
 
 /// More functions are left to smaller parts, where fewer of them matter.
 pub(super) const MOST: usize = 4;
@@ -101,6 +104,24 @@ impl Combinations {
     #[inline]
     pub(super) fn sign(&self, of_faces: &[f64; MOST]) -> f64 {
         self.of[place_of(of_faces)]
+    }
+
+    /// The same along rays side by side.
+    #[inline(always)]
+    pub(super) fn signs<S: Simd>(&self, simd: S, of_faces: &[Row; MOST]) -> Row {
+        let all = |number| Lanes::all(simd, number);
+        let (mut places, mut signs) = ([0.0; ROW], [0.0; ROW]);
+        for part in 0..parts::<S>() {
+            let mut place = all(0.0);
+            for row in of_faces.iter().rev() {
+                place = all(3.0) * place + (Lanes::of(simd, row, part) + all(1.0));
+            }
+            place.put(&mut places, part);
+        }
+        for (sign, place) in signs.iter_mut().zip(places) {
+            *sign = self.of[place as usize];
+        }
+        signs
     }
 
     /// The face whose sign is not known, if that is one alone, and F has its sign.

@@ -25,6 +25,7 @@ mod faces;
 mod form;
 mod grazing;
 mod made;
+mod met;
 mod monotone;
 mod narrowing;
 mod packet;

@@ -78,6 +78,7 @@ pub(super) enum End {
 
 impl Pixels {
     /// Rays that look for a root where one is wanted, and begin where a part's expansion is centred.
+    #[inline(always)]
     pub(super) fn new(packet: Packet, rays: RayRow, wanted: [Row; 2], bow: &Bow) -> Self {
         let (nothing, no) = ([f64::NAN; _], [0.0; _]);
         let known = Bowed { slope: no, last_t: nothing, last: nothing, starts_below: no };

@@ -12,6 +12,7 @@ use super::edges::Meeting;
 use super::form::Form;
 use super::grazing::Attempts;
 use super::made::MOST;
+use super::met::Met;
 use super::packet::Packet;
 use super::pixels::Pixels;
 use super::rounding::Rounding;
@@ -87,8 +88,7 @@ pub(crate) struct Memory {
     pub(super) alone: [Vec<Packet>; MOST],
     /// The numbers of meetings that are asked for a face, and where.
     pub(super) asked: Vec<(usize, Span)>,
-    /// The hits whose normals are still to be found, each with the function that has its own and the number of kernels of that.
-    pub(super) met: Vec<(usize, u32, Asked)>,
+    pub(super) met: Met,
     /// What was found out last of rounding.
     pub(super) rounding: Option<Rounding>,
 }
@@ -339,7 +339,7 @@ impl<'a> Subdivision<'a> {
     pub(super) fn meet(&mut self, place: usize, hit: Hit, kernels: u32) {
         if self.normals.is_some() {
             let function = self.kernels(kernels).identity();
-            self.memory.met.push((function, kernels, Asked { place, t: hit.t }));
+            self.memory.met.push((function, kernels), Asked { place, t: hit.t });
         }
         self.end(place, Outcome::Hit(hit));
     }
@@ -347,18 +347,11 @@ impl<'a> Subdivision<'a> {
     /// Puts the normals of hits in their places, those of one function at a time.
     fn put_normals(&mut self) {
         let Some(normals) = &mut self.normals else { return };
-        let Workspace { asked, .. } = &mut *self.workspace;
-        let mut asked = std::mem::take(asked);
-        let met = &mut self.memory.met;
-        met.sort_by_key(|(function, ..)| *function);
-        for met in met.chunk_by(|a, b| a.0 == b.0) {
-            let kernels = &self.kernels[met[0].1 as usize];
-            asked.clear();
-            asked.extend(met.iter().map(|(.., asked)| *asked));
+        for (number, asked) in self.memory.met.by_function() {
+            let kernels = &self.kernels[number as usize];
             self.workspace.counters.operations += kernels.charge(Kernel::Gradients, asked.len());
-            answer(kernels.over_points(Kernel::Gradients), self.workspace, self.tile, &asked, normals);
+            answer(kernels.over_points(Kernel::Gradients), self.workspace, self.tile, asked, normals);
         }
-        self.workspace.asked = asked;
     }
 
     /// Notes how the search along a ray ends.
