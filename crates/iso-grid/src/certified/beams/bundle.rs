@@ -1,12 +1,10 @@
 //! Rays side by side that are followed to their roots where F is monotone.
 
-use std::ops::Range;
-
 use glam::DVec3;
 use iso_expr::{BatchKernel, Scratch};
 use pulp::{Simd, WithSimd};
 
-use super::form::{Model, ROUNDING};
+use super::form::ROUNDING;
 use super::pixels::{STEPS, state};
 use crate::batch::PointBatch;
 use crate::lanes::{Lanes, ROW, Row, parts};
@@ -18,23 +16,23 @@ use crate::{Hit, Span, Tile};
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Bundle {
     /// Which rays of the tile, and their columns and rows.
-    places: [u32; ROW],
-    columns: Row,
-    rows: Row,
+    pub(super) places: [u32; ROW],
+    pub(super) columns: Row,
+    pub(super) rows: Row,
     rays: RayRow,
     /// Where the part's certificate holds inside the region: starts and ends.
-    reach: [Row; 2],
+    pub(super) reach: [Row; 2],
     /// Where a root is looked for: everything before it is free of roots. In the end, what encloses it.
-    wanted: [Row; 2],
+    pub(super) wanted: [Row; 2],
     /// Where F is to be taken next, inside `reach`. In the end, about where the root is.
-    t: Row,
+    pub(super) t: Row,
     /// F at the last place where its slope was taken, one over the slope, and how far t is from there.
     value: Row,
     inverse: Row,
     step: Row,
     /// How far t is from where F was taken last.
     moved: Row,
-    state: Row,
+    pub(super) state: Row,
 }
 
 /// A ray is near its root where another step is expected to leave this part of the tolerance.
@@ -244,110 +242,6 @@ impl Bundle {
                 normals[self.places[lane] as usize] = DVec3::new(x[lane], y[lane], z[lane]);
             }
         }
-    }
-}
-
-/// How far apart roots of neighbours must be, relative to where they are, so that roundings are much less.
-const DISTINCT: f64 = 1e-9;
-
-/// Where rays of a part are likely to meet the surface.
-pub(super) struct Start<'a> {
-    model: &'a Model,
-    /// The column and the row that the model counts from.
-    middle: (f64, f64),
-    /// By the model, roots lie between these.
-    within: [f64; 2],
-    /// How many columns there are to a unit of t, if roots of neighbours are distinct.
-    columns: Option<f64>,
-}
-
-impl<'a> Start<'a> {
-    /// By a model that counts from this column and row, where roots are wanted in a stretch.
-    pub(super) fn new(model: &'a Model, middle: (f64, f64), stretch: Span) -> Self {
-        let within = model.around(stretch);
-        let most = DISTINCT * (within[0].abs() + within[1].abs());
-        let are_distinct = most < model.by_column.abs();
-        Self { model, middle, within, columns: are_distinct.then(|| 1.0 / model.by_column) }
-    }
-
-    /// Whether a ray whose root the model has here has none.
-    #[inline(always)]
-    fn is_far(&self, t: f64) -> bool {
-        let [least, most] = self.within;
-        (t < least) | (most < t)
-    }
-
-    /// Which of so many neighbours in a row may have likely roots, the first so far from the middle: all of those, and a few more.
-    #[inline(always)]
-    fn columns(&self, (across, along): (f64, f64), count: usize) -> Range<usize> {
-        let [least, most] = self.within;
-        let first = self.model.at(across, along);
-        let Some(columns) = self.columns.filter(|_| first.is_finite()) else { return 0..count };
-        let ends = [columns * (least - first), columns * (most - first)];
-        // One more at both ends makes up for roundings. Casts saturate.
-        let start = (ends[0].min(ends[1]) - 1.0) as usize;
-        let end = (ends[0].max(ends[1]) + 2.0) as usize;
-        start.min(count)..end.min(count)
-    }
-}
-
-/// Bundles that are filled one after the other, so that few lanes stay empty, and pursued together.
-#[derive(Debug, Default)]
-pub(crate) struct Sheaf {
-    bundles: Vec<Bundle>,
-    /// How many rays are in them so far.
-    rays: usize,
-}
-
-impl Sheaf {
-    /// How many rays it holds at most.
-    pub(super) const MOST: usize = AT_ONCE * ROW;
-
-    /// How many more it holds.
-    pub(super) fn room(&self) -> usize {
-        Self::MOST - self.rays
-    }
-
-    /// Adds those of some neighbours in a row of a tile, the first in this column and this place, that are open and may have a root by the
-    /// model. There is room for all.
-    #[inline]
-    pub(super) fn add(
-        &mut self,
-        ((column, row), place): ((usize, usize), usize),
-        open: &[bool],
-        start: &Start<'_>,
-    ) {
-        if self.bundles.is_empty() {
-            // One more is written to than is filled.
-            self.bundles = vec![Bundle::default(); AT_ONCE + 1];
-        }
-        let (across, along) = (column as f64 - start.middle.0, row as f64 - start.middle.1);
-        let mut rays = self.rays;
-        for number in start.columns((across, along), open.len()) {
-            let t = start.model.at(across + number as f64, along);
-            let (bundle, lane) = (&mut self.bundles[rays / ROW], rays % ROW);
-            bundle.places[lane] = (place + number) as u32;
-            (bundle.columns[lane], bundle.rows[lane]) = ((column + number) as f64, row as f64);
-            bundle.t[lane] = t;
-            // Written over by the next unless it is counted, for which of them are cannot be foreseen.
-            rays += usize::from(open[number] & !start.is_far(t));
-        }
-        self.rays = rays;
-    }
-
-    /// Takes out its bundles, for roots that are wanted where the part's certificate holds.
-    pub(super) fn take(&mut self, [wanted, reach]: [Span; 2]) -> &mut [Bundle] {
-        let bundles = &mut self.bundles[..self.rays.div_ceil(ROW)];
-        for bundle in &mut *bundles {
-            bundle.state = [state::OPEN; ROW];
-            bundle.wanted = [[wanted.start; ROW], [wanted.end; ROW]];
-            bundle.reach = [[reach.start; ROW], [reach.end; ROW]];
-        }
-        if let [.., last] = &mut *bundles {
-            last.state[(self.rays - 1) % ROW + 1..].fill(state::FREE);
-        }
-        self.rays = 0;
-        bundles
     }
 }
 

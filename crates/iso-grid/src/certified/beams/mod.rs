@@ -31,6 +31,7 @@ mod narrowing;
 mod packet;
 mod pixels;
 mod rounding;
+mod sheaf;
 mod signs;
 mod slabs;
 mod spread;

@@ -1,9 +1,10 @@
 //! The roots of single rays of a beam along which F is monotone.
 
 use super::beam::Beam;
-use super::bundle::{Bundle, Last, Pursuit, Sheaf, Sight, Start};
+use super::bundle::{Bundle, Last, Pursuit, Sight};
 use super::form::{Form, Model, ROUNDING};
 use super::rounding::Rounding;
+use super::sheaf::{Sheaf, Start};
 use super::subdivision::{Part, SMALLEST, Subdivision};
 use crate::certified::clip::Clip;
 use crate::{Kernel, Outcome, Span, Workspace};

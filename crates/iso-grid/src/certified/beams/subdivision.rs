@@ -7,7 +7,6 @@ use glam::DVec3;
 use iso_expr::{Composition, Decorated};
 
 use super::beam::{Beam, count_in};
-use super::bundle::Sheaf;
 use super::edges::Meeting;
 use super::form::Form;
 use super::grazing::Attempts;
@@ -16,6 +15,7 @@ use super::met::Met;
 use super::packet::Packet;
 use super::pixels::Pixels;
 use super::rounding::Rounding;
+use super::sheaf::Sheaf;
 use super::slabs::{LEAST_OVERLAP, Slab};
 use crate::area::Area;
 use crate::certified::Certified;

@@ -1,12 +1,13 @@
 //! Rays that look for spheres, and planes.
 
 use glam::DVec3;
-use iso_expr::random::Random;
 use iso_expr::{Ast, Engine, Interpreter};
 use pulp::{Arch, Scalar};
 
 use super::*;
 use crate::Raster;
+use crate::certified::beams::form::Model;
+use crate::certified::beams::sheaf::{Sheaf, Start};
 
 /// Where the ray of a place meets the sphere.
 fn root_of(place: usize) -> f64 {
@@ -129,49 +130,4 @@ fn rays_end_where_they_meet_the_sphere_on_any_processor() {
             }
         }
     }
-}
-
-#[test]
-fn bundles_hold_the_open_rays_that_are_likely_to_meet_the_surface_and_no_others() {
-    let mut random = Random::new(5);
-    let mut sheaf = Sheaf::default();
-    let [mut fewest, mut most] = [usize::MAX, 0];
-    for round in 0..2000 {
-        let width = 1 + random.below(70);
-        let mut steps = [(); 2].map(|()| random.between(-1.0, 1.0) * 10_f64.powi(-(random.below(18) as i32)));
-        steps[round % 2] *= f64::from(u8::from(round % 5 > 0));
-        let [by_column, by_row] = steps;
-        let t = if round % 50 == 0 { f64::NAN } else { random.between(4.0, 6.0) };
-        let uncertainty = random.between(0.0, 0.3);
-        let model = match round % 40 {
-            // All on the edge, as far as doubles tell.
-            1 => Model { t: 5.0, by_column: -1e-18, by_row: 0.0, uncertainty: 0.0 },
-            _ => Model { t, by_column, by_row, uncertainty },
-        };
-        let stretch = Span { start: 5.0, end: random.between(5.0, 6.0) };
-        let start = Start::new(&model, (20.5, 3.5), stretch);
-        let open: Vec<_> = (0..width).map(|_| random.below(4) > 0).collect();
-        let (mut expected, mut found) = (Vec::new(), Vec::new());
-        for row in 0..3 {
-            let first = 7 + row;
-            sheaf.add(((first, row), 100 * row), &open, &start);
-            expected.extend((0..width).filter(|number| open[*number]).filter_map(|number| {
-                let t = model.at((first + number) as f64 - 20.5, row as f64 - 3.5);
-                let [least, most] = model.around(stretch);
-                let is_far = t < least || most < t;
-                (!is_far).then_some((100 * row + number, first + number, row, t.to_bits()))
-            }));
-        }
-        assert_eq!(sheaf.room(), Sheaf::MOST - expected.len());
-        for bundle in sheaf.take([stretch; 2]) {
-            assert!(bundle.state[0] == state::OPEN && bundle.wanted == bundle.reach);
-            found.extend((0..ROW).filter(|lane| bundle.state[*lane] == state::OPEN).map(|lane| {
-                let [column, row] = [bundle.columns[lane] as usize, bundle.rows[lane] as usize];
-                (bundle.places[lane] as usize, column, row, bundle.t[lane].to_bits())
-            }));
-        }
-        assert_eq!(found, expected, "{model:?}, {stretch:?}");
-        (fewest, most) = (fewest.min(found.len()), most.max(found.len()));
-    }
-    assert!(fewest == 0 && most > 100, "{fewest}..{most}");
 }
