@@ -12,6 +12,9 @@ use crate::{Kernel, Span};
 /// How many times its size a box for which rounding is bounded grows at each side, so that it holds neighbours too.
 const AROUND: f64 = 1.5;
 
+/// So many of the last boxes are remembered: rays come back to places in front of and behind others.
+const KEPT: usize = 8;
+
 /// What rounding does to F on a box.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rounding {
@@ -41,15 +44,20 @@ impl Rounding {
 impl Subdivision<'_> {
     /// What rounding does to F on a box and around it, if that is bounded: neighbouring parts share it.
     pub(super) fn rounding_around(&mut self, kernels: u32, (lo, hi): (DVec3, DVec3)) -> Option<Rounding> {
-        if let Some(known) = self.memory.rounding.filter(|known| known.covers(kernels, lo, hi)) {
-            return Some(known);
+        let known = &self.memory.roundings;
+        if let Some(known) = known.iter().rev().find(|known| known.covers(kernels, lo, hi)) {
+            return Some(*known);
         }
         let (region, room) = (&self.certified.region, AROUND * (hi - lo));
         let (least, most) = self.kernels(kernels).corners();
         let around = [(lo - room).max(region.min()).max(least), (hi + room).min(region.max()).min(most)];
-        let found = self.rounding(kernels, (around[0].min(lo), around[1].max(hi)));
-        self.memory.rounding = found.or(self.memory.rounding);
-        found
+        let found = self.rounding(kernels, (around[0].min(lo), around[1].max(hi)))?;
+        let known = &mut self.memory.roundings;
+        if known.len() == KEPT {
+            known.remove(0);
+        }
+        known.push(found);
+        Some(found)
     }
 
     /// What rounding does to F on a box.

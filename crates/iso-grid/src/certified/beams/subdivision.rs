@@ -89,8 +89,8 @@ pub(crate) struct Memory {
     /// The numbers of meetings that are asked for a face, and where.
     pub(super) asked: Vec<(usize, Span)>,
     pub(super) met: Met,
-    /// What was found out last of rounding.
-    pub(super) rounding: Option<Rounding>,
+    /// What was found out of rounding, the last at the end.
+    pub(super) roundings: Vec<Rounding>,
 }
 
 /// The subdivision of a tile.
@@ -141,7 +141,7 @@ impl<'a> Subdivision<'a> {
         memory.beams.clear();
         memory.beams.push(beam);
         memory.met.clear();
-        memory.rounding = None;
+        memory.roundings.clear();
         memory.attempts = Attempts::default();
         memory.open.clear();
         memory.open.resize(tile.len(), true);
