@@ -215,16 +215,16 @@ impl Bundle {
         let inverse = (computed - middle).abs().is_at_most(most).select(computed, middle);
         value.put(&mut self.value, part);
         inverse.put(&mut self.inverse, part);
+        let linear = value * inverse;
+        if is_first {
+            return t - linear;
+        }
 
         let per_value = one / (value - last);
         let (secant, share) = (step * per_value, value * per_value);
         let bend =
             share * (value * (inverse - secant) - last * share * (before + inverse - (secant + secant)));
-        let linear = value * inverse;
-        if is_first {
-            return t - linear;
-        }
-        // A bend is a small correction, and none is known before the second value.
+        // A bend is a small correction, or is not a number where F was the same before.
         let is_small = (bend + bend).abs().is_less(linear.abs());
         is_small.select(t - linear + bend, t - linear)
     }

@@ -27,8 +27,9 @@ impl<'a> Start<'a> {
     pub(super) fn new(model: &'a Model, middle: (f64, f64), stretch: Span) -> Self {
         let within = model.around(stretch);
         let most = DISTINCT * (within[0].abs() + within[1].abs());
-        let are_distinct = most < model.by_column.abs();
-        Self { model, middle, within, columns: are_distinct.then(|| 1.0 / model.by_column) }
+        let columns = 1.0 / model.by_column;
+        let are_distinct = most < model.by_column.abs() && columns.is_finite();
+        Self { model, middle, within, columns: are_distinct.then_some(columns) }
     }
 
     /// Whether a ray whose root the model has here has none.
