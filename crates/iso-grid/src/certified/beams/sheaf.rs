@@ -106,7 +106,13 @@ impl Sheaf {
             bundle.reach = [[reach.start; ROW], [reach.end; ROW]];
         }
         if let [.., last] = &mut *bundles {
-            last.state[(self.rays - 1) % ROW + 1..].fill(state::FREE);
+            let filled = (self.rays - 1) % ROW + 1;
+            last.state[filled..].fill(state::FREE);
+            // What stands behind may be of a larger tile.
+            for row in [&mut last.columns, &mut last.rows, &mut last.t] {
+                let first = row[0];
+                row[filled..].fill(first);
+            }
         }
         self.rays = 0;
         bundles
@@ -154,6 +160,9 @@ mod tests {
             assert_eq!(sheaf.room(), Sheaf::MOST - expected.len());
             for bundle in sheaf.take([stretch; 2]) {
                 assert!(bundle.state[0] == state::OPEN && bundle.wanted == bundle.reach);
+                let rays: Vec<_> = bundle.columns.into_iter().zip(bundle.rows).collect();
+                let are_free = bundle.state.iter().map(|state| *state == state::FREE);
+                assert!(are_free.zip(&rays).all(|(is_free, ray)| !is_free || *ray == rays[0]));
                 found.extend((0..ROW).filter(|lane| bundle.state[*lane] == state::OPEN).map(|lane| {
                     let [column, row] = [bundle.columns[lane] as usize, bundle.rows[lane] as usize];
                     (bundle.places[lane] as usize, column, row, bundle.t[lane].to_bits())
