@@ -43,7 +43,8 @@ pub trait Tracer: Send + Sync {
     /// When the surface's [`Stop`](crate::Stop) is requested, this returns soon, and no outcome means anything.
     fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]);
 
-    /// The same for a tile, row by row, whose outcomes are all misses to begin with. Says whether any is not one in the end.
+    /// The same for a tile, row by row; says whether any ray ends elsewhere than in a miss. All outcomes have to be misses to begin with, for
+    /// where nothing is found they may be left as they are.
     ///
     /// A method may share work between the rays of a tile. What it says of each is as true as if it were traced alone, but
     /// where in its bracket a root is placed, and how wide the bracket is, may depend on the other rays of the tile.
@@ -58,8 +59,7 @@ pub trait Tracer: Send + Sync {
         normals: Option<&mut [DVec3]>,
     ) -> bool {
         let _ = normals;
-        self.trace(workspace, &tile.rays().collect::<Vec<_>>(), outcomes);
-        outcomes.iter().any(|outcome| *outcome != Outcome::Miss)
+        trace_each(self, workspace, tile, outcomes)
     }
 
     /// A function with the signs of F − C, and its three derivatives, at points of the box with these corners, where the method knows
@@ -71,6 +71,17 @@ pub trait Tracer: Send + Sync {
 
     /// What preprocessing took.
     fn preprocessing(&self) -> Counters;
+}
+
+/// Traces the rays of a tile each for its own; says whether any ends elsewhere than in a miss.
+pub(crate) fn trace_each<T: Tracer + ?Sized>(
+    tracer: &T,
+    workspace: &mut Workspace,
+    tile: Tile<'_>,
+    outcomes: &mut [Outcome],
+) -> bool {
+    tracer.trace(workspace, &tile.rays().collect::<Vec<_>>(), outcomes);
+    outcomes.iter().any(|outcome| *outcome != Outcome::Miss)
 }
 
 /// A thread's working memory and counts, reused from call to call. It carries no results but its counters.

@@ -58,6 +58,8 @@ fn normals_found_on_the_way_are_those_of_the_hits_and_change_no_outcome() {
         "sin(3x) * cos(3y) + sin(3y) * cos(3z) + sin(3z) * cos(3x) = 0",
         "x^2 + y^2 + z^2 = 0.7 + abs(z) / 2",
         "exp(x) + y^2 = z + 1",
+        "min((x - 0.4)^2 + y^2 + z^2 - 0.5, (x + 0.4)^2 + y^2 + z^2 - 0.4) = 0",
+        "max(x^2 + y^2 + z^2 - 1, 0.1 - x^2 - y^2, z - x/3 - 0.4) = 0",
     ];
     let [right, down] = [DVec3::new(0.02, 0.0, 0.0), DVec3::new(0.0, -0.02, 0.005)];
     let middle = DVec3::new(0.0, 0.0, 5.0);

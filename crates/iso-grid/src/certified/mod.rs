@@ -20,6 +20,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use iso_expr::{BatchKernel, CompileError};
 
+use crate::tracer::trace_each;
 use crate::{Counters, Outcome, Ray, Region, Span, Stop, Surface, Tile, Tracer, Workspace};
 pub(crate) use beams::Memory;
 use beams::Subdivision;
@@ -180,10 +181,7 @@ impl Tracer for Certified {
         assert!(normals.as_ref().is_none_or(|normals| normals.len() == tile.len()));
         match Subdivision::new(self, workspace, tile, (outcomes, normals)) {
             Some(subdivision) => subdivision.run(),
-            None => {
-                self.trace(workspace, &tile.rays().collect::<Vec<_>>(), outcomes);
-                outcomes.iter().any(|outcome| *outcome != Outcome::Miss)
-            }
+            None => trace_each(self, workspace, tile, outcomes),
         }
     }
 

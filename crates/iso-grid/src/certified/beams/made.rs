@@ -213,7 +213,13 @@ mod tests {
         for a in [-1.0, 0.0, 1.0] {
             for b in [-1.0, 0.0, 1.0] {
                 for c in [-1.0, 0.0, 1.0] {
-                    assert_eq!(found.sign(&[a, b, c, 0.0]), f64::max(f64::min(a, b), c), "{a}, {b}, {c}");
+                    let expected = f64::max(f64::min(a, b), c);
+                    assert_eq!(found.sign(&[a, b, c, 0.0]), expected, "{a}, {b}, {c}");
+                    let mut of_faces = [a, b, c, 0.0].map(|sign| [sign; ROW]);
+                    of_faces[2][3] = 1.0;
+                    let signs = found.signs(pulp::Scalar::new(), &of_faces);
+                    let side_by_side = |lane: usize| if lane == 3 { 1.0 } else { expected };
+                    assert_eq!(signs, std::array::from_fn(side_by_side), "{a}, {b}, {c}");
                 }
             }
         }

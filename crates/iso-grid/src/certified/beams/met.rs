@@ -37,3 +37,29 @@ impl Met {
         self.functions.iter().zip(&self.hits).map(|((_, kernels), hits)| (*kernels, &hits[..]))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The numbers of kernels, and the places of the hits of each.
+    fn hits(met: &Met) -> Vec<(u32, Vec<usize>)> {
+        met.by_function()
+            .map(|(kernels, hits)| (kernels, hits.iter().map(|hit| hit.place).collect()))
+            .collect()
+    }
+
+    #[test]
+    fn hits_stand_with_their_functions_and_those_of_an_earlier_tile_are_gone() {
+        let mut met = Met::default();
+        let asked = |place| Asked { place, t: 1.0 };
+        for (function, kernels, place) in [(7, 1, 0), (9, 2, 1), (7, 3, 2), (8, 4, 3), (9, 2, 4)] {
+            met.push((function, kernels), asked(place));
+        }
+        assert_eq!(hits(&met), [(1, vec![0, 2]), (2, vec![1, 4]), (4, vec![3])]);
+        met.clear();
+        assert_eq!(hits(&met), []);
+        met.push((9, 5), asked(6));
+        assert_eq!(hits(&met), [(5, vec![6])]);
+    }
+}

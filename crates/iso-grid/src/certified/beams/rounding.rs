@@ -81,3 +81,17 @@ impl Subdivision<'_> {
 pub(super) fn outwards(lo: DVec3, hi: DVec3) -> [Interval; 3] {
     [0, 1, 2].map(|axis| Interval { lo: round_down(round_down(lo[axis])), hi: round_up(round_up(hi[axis])) })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bound_holds_for_its_own_function_inside_its_own_box() {
+        let (lo, hi) = (DVec3::NEG_ONE, DVec3::ONE);
+        let bound = Rounding { kernels: 3, lo, hi, of_values: 1.0, gradient: DVec3::ONE };
+        assert!(bound.covers(3, lo, hi) && bound.covers(3, 0.5 * lo, 0.5 * hi));
+        assert!(!bound.covers(2, lo, hi), "another function");
+        assert!(!bound.covers(3, lo, hi + 1e-9 * DVec3::Z) && !bound.covers(3, lo - 1e-9 * DVec3::X, hi));
+    }
+}

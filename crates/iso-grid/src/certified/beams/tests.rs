@@ -6,6 +6,7 @@ use glam::DVec3;
 use iso_expr::{Ast, Interpreter};
 use pulp::Arch;
 
+use super::sheaf::Sheaf;
 use crate::{Certified, Outcome, Raster, Region, Surface, Tile, Tracer, Workspace};
 
 /// Silhouettes, edges of unions and of intersections, one that is cut, and a limb.
@@ -45,4 +46,30 @@ fn rays_end_alike_whatever_the_processor_computes_with_at_once() {
         let hits = found.0.iter().filter(|outcome| matches!(outcome, Outcome::Hit(_))).count();
         assert!((300..3500).contains(&hits), "{formula}: {hits}");
     }
+}
+
+/// A plane is followed along all rays of such a row at once, for which a sheaf has no room.
+#[test]
+fn rows_may_be_longer_than_a_sheaf() {
+    let program = Ast::parse("z - x/10").unwrap().lower(&[]).unwrap().minus_level(0.05).simplified();
+    let surface = Surface::new(Arc::new(Interpreter), program);
+    let region = Region::new(DVec3::splat(-1.0), DVec3::splat(1.0)).unwrap();
+    let certified = Certified::new(&surface, region).unwrap();
+    let width = 2 * Sheaf::MOST + 88;
+    let raster = Raster::Parallel {
+        middle: DVec3::new(0.0, 0.0, 4.0),
+        right: DVec3::new(1.8 / width as f64, 0.0, 0.0),
+        down: DVec3::new(0.0, 0.01, 0.0),
+        direction: DVec3::NEG_Z,
+    };
+    let tile = Tile::of(&raster, [-0.5 * width as f64, 0.0], width, 3);
+    let (mut workspace, mut outcomes) = (Workspace::default(), vec![Outcome::Miss; tile.len()]);
+    assert!(certified.trace_tile(&mut workspace, tile, &mut outcomes, None));
+    for (ray, outcome) in tile.rays().zip(&outcomes) {
+        let Outcome::Hit(hit) = outcome else { panic!("{outcome:?}") };
+        assert!((4.0 - hit.t - ray.origin.x / 10.0 - 0.05).abs() < 1e-11, "{hit:?}");
+    }
+    // Once on each ray, and on none for its own.
+    let taken = workspace.counters.trace_evaluations;
+    assert!(taken < tile.len() as u64 + 64, "{taken}");
 }
