@@ -6,6 +6,7 @@ use pulp::{Simd, WithSimd};
 
 use super::form::ROUNDING;
 use super::pixels::{STEPS, state};
+use super::sheaf::Start;
 use crate::batch::PointBatch;
 use crate::lanes::{Lanes, ROW, Row, parts};
 use crate::normals::put_units;
@@ -15,10 +16,10 @@ use crate::{Hit, Span, Tile};
 /// Rays that may each have a root in a part, and what is known of F along them.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Bundle {
-    /// Which rays of the tile, and their columns and rows.
-    pub(super) places: [u32; ROW],
-    pub(super) columns: Row,
-    pub(super) rows: Row,
+    /// The columns and rows of the rays in the tile, and their places there.
+    pub(super) columns: [u32; ROW],
+    pub(super) rows: [u32; ROW],
+    places: [u32; ROW],
     rays: RayRow,
     /// Where the part's certificate holds inside the region: starts and ends.
     pub(super) reach: [Row; 2],
@@ -111,19 +112,27 @@ impl Bundle {
         (0..ROW).filter(move |lane| is_meant(self.state[*lane])).map(move |lane| (lane, wanted(lane)))
     }
 
-    /// Begins with its open rays; says whether there are any.
+    /// Begins with its open rays, where they are likely to have a root; says whether there are any.
     #[inline(always)]
-    fn begin<S: Simd>(&mut self, simd: S, tile: &Tile<'_>) -> bool {
+    fn begin<S: Simd>(&mut self, simd: S, tile: &Tile<'_>, start: &Start<'_>) -> bool {
+        let [columns, rows] = [doubles(&self.columns), doubles(&self.rows)];
+        let (mut t, width) = (Row::default(), tile.width() as u32);
+        for lane in 0..ROW {
+            self.places[lane] = self.rows[lane] * width + self.columns[lane];
+        }
+        for lane in 0..ROW {
+            t[lane] = start.at(columns[lane], rows[lane]);
+        }
         let all = |number| Lanes::all(simd, number);
         let mut most_open = all(0.0);
         for part in 0..parts::<S>() {
             let at = |row: &Row| Lanes::of(simd, row, part);
-            at(&self.t).between(at(&self.reach[0]), at(&self.reach[1])).put(&mut self.t, part);
+            at(&t).between(at(&self.reach[0]), at(&self.reach[1])).put(&mut self.t, part);
             most_open = at(&self.state).is_same(all(state::OPEN)).select(all(1.0), most_open);
         }
         let are_open = most_open.greatest() > 0.0;
         if are_open {
-            self.rays = tile.row(simd, &self.columns, &self.rows);
+            self.rays = tile.row(simd, &columns, &rows);
             self.step = [f64::INFINITY; ROW];
         }
         are_open
@@ -245,9 +254,18 @@ impl Bundle {
     }
 }
 
+/// Whole numbers as doubles.
+#[inline(always)]
+fn doubles(numbers: &[u32; ROW]) -> Row {
+    let mut doubles = Row::default();
+    doubles.iter_mut().zip(numbers).for_each(|(double, number)| *double = f64::from(*number));
+    doubles
+}
+
 /// The pursuit of some rays.
 pub(super) struct Pursuit<'a> {
     pub(super) tile: &'a Tile<'a>,
+    pub(super) start: &'a Start<'a>,
     pub(super) bundles: &'a mut [Bundle],
     pub(super) sight: &'a Sight,
     pub(super) slopes: &'a dyn BatchKernel,
@@ -280,11 +298,11 @@ impl WithSimd for Pursuit<'_> {
     /// Pursues all rays until they are free, hit or lost.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Taken {
-        let Self { tile, bundles, sight, slopes, mut last, points, scratch } = self;
+        let Self { tile, start, bundles, sight, slopes, mut last, points, scratch } = self;
         let mut taken = Taken::default();
         let (mut open, mut count) = ([0; AT_ONCE], 0);
         for (number, bundle) in bundles.iter_mut().enumerate() {
-            if bundle.begin(simd, tile) {
+            if bundle.begin(simd, tile, start) {
                 open[count] = number;
                 count += 1;
             }

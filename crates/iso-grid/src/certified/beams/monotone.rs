@@ -1,8 +1,10 @@
 //! The roots of single rays of a beam along which F is monotone.
 
+use std::ops::Range;
+
 use super::beam::Beam;
 use super::bundle::{Bundle, Last, Pursuit, Sight};
-use super::form::{Form, Model, ROUNDING};
+use super::form::{Form, ROUNDING};
 use super::rounding::Rounding;
 use super::sheaf::{Sheaf, Start};
 use super::subdivision::{Part, SMALLEST, Subdivision};
@@ -71,10 +73,15 @@ impl Subdivision<'_> {
     /// Follows each ray of a part on which F is monotone with slopes that are much alike, unless too many may be followed in vain; says
     /// whether it did.
     pub(super) fn follow_even(&mut self, part: &Part) -> bool {
+        if !part.form.is_even() {
+            return false;
+        }
         let model = part.form.model(self.beam(part.beam));
-        let is_followed = part.form.is_even() && (self.is_small(part) || self.most_hit(part, &model));
+        let middle = self.beam(part.beam).area.offset_of_first();
+        let start = Start::new(&model, middle, part.stretch);
+        let is_followed = self.is_small(part) || self.most_hit(part, &start);
         if is_followed {
-            self.follow_each(part, &model);
+            self.follow_each(part, &start);
         }
         is_followed
     }
@@ -84,59 +91,58 @@ impl Subdivision<'_> {
     }
 
     /// Whether few rays of a part may have a root, but are likely to have none. Of large parts only the corners are asked.
-    fn most_hit(&self, part: &Part, model: &Model) -> bool {
-        let Beam { area, radii: [across, along], .. } = *self.beam(part.beam);
-        let Span { start, end } = part.stretch;
+    fn most_hit(&self, part: &Part, start: &Start<'_>) -> bool {
+        let area = self.beam(part.beam).area;
         if area.side() > LARGEST_COUNTED {
-            let corners = [(-across, -along), (across, -along), (-across, along), (across, along)];
-            return corners.into_iter().all(|(a, b)| (start..=end).contains(&model.at(a, b)));
+            return area.corners().into_iter().all(|corner| start.is_sure(corner));
         }
-        let [least, most] = model.around(part.stretch);
-        let mut doubtful = 0;
-        for (row, b) in area.rows().zip(halves_from(-along)) {
+        let doubtful = |row: usize| {
+            let (likely, sure) =
+                (start.likely((area.column, row), area.width), start.sure((area.column, row), area.width));
             let open = &self.memory.open[row * self.tile.width()..][area.columns()];
-            for (is_open, a) in open.iter().zip(halves_from(-across)) {
-                let t = model.at(a, b);
-                let is_doubtful = (least <= t) & (t <= most) & ((t < start) | (end < t));
-                doubtful += usize::from(is_open & is_doubtful);
+            let count = |range: Range<usize>| open[range].iter().filter(|is_open| **is_open).count();
+            match sure.is_empty() {
+                true => count(likely),
+                false => count(likely.start..sure.start) + count(sure.end..likely.end),
             }
-        }
-        doubtful <= DOUBTFUL
+        };
+        area.rows().map(doubtful).sum::<usize>() <= DOUBTFUL
     }
 
     /// Ends or goes on with each ray of a part by its root there.
-    fn follow_each(&mut self, part: &Part, model: &Model) {
+    fn follow_each(&mut self, part: &Part, start: &Start<'_>) {
         let Some(sight) = self.sight(part) else {
             let is_smallest = self.size(part) <= SMALLEST;
             return if is_smallest { self.search_each(part) } else { self.divide_beam(part) };
         };
         let area = self.beam(part.beam).area;
-        let start = Start::new(model, area.offset_of_first(), part.stretch);
         let mut sheaf = std::mem::take(&mut self.memory.sheaf);
         for row in area.rows() {
-            for column in area.columns().step_by(Sheaf::MOST) {
-                let count = Sheaf::MOST.min(area.columns().end - column);
+            let Range { start: mut column, end } = area.columns();
+            while column < end {
+                let count = Sheaf::MOST.min(end - column);
                 if sheaf.room() < count {
-                    self.pursue_sheaf(&mut sheaf, part, &sight);
+                    self.pursue_sheaf(&mut sheaf, part, (start, &sight));
                 }
-                let place = row * self.tile.width() + column;
-                sheaf.add(((column, row), place), &self.memory.open[place..][..count], &start);
+                let open = &self.memory.open[row * self.tile.width() + column..][..count];
+                sheaf.add((column, row), open, start);
+                column += count;
             }
         }
-        self.pursue_sheaf(&mut sheaf, part, &sight);
+        self.pursue_sheaf(&mut sheaf, part, (start, &sight));
         self.memory.sheaf = sheaf;
     }
 
     /// Ends or goes on with each ray of a sheaf. Those that may have a root so near to a face of the region that no point inside is known
     /// are searched each for its own.
-    fn pursue_sheaf(&mut self, sheaf: &mut Sheaf, part: &Part, sight: &Sight) {
+    fn pursue_sheaf(&mut self, sheaf: &mut Sheaf, part: &Part, (start, sight): (&Start<'_>, &Sight)) {
         let bundles = sheaf.take([part.stretch, part.form.reach]);
         if !part.is_inside {
             bundles
                 .iter_mut()
                 .for_each(|bundle| bundle.clip(|column, row| self.clipped(part, (column, row))));
         }
-        self.pursue_bundles(bundles, part, sight);
+        self.pursue_bundles(bundles, part, (start, sight));
         for bundle in &*bundles {
             bundle.hits().for_each(|(place, hit)| self.end(place, Outcome::Hit(hit)));
             for (place, stretch) in bundle.lost() {
@@ -146,7 +152,7 @@ impl Subdivision<'_> {
     }
 
     /// Follows the rays of no more than [`AT_ONCE`](super::bundle::AT_ONCE) bundles.
-    fn pursue_bundles(&mut self, bundles: &mut [Bundle], part: &Part, sight: &Sight) {
+    fn pursue_bundles(&mut self, bundles: &mut [Bundle], part: &Part, (start, sight): (&Start<'_>, &Sight)) {
         let kernels = part.kernels;
         let Workspace { arch, points, scratch, counters, .. } = &mut *self.workspace;
         let of_part = &self.kernels[kernels as usize];
@@ -159,7 +165,7 @@ impl Subdivision<'_> {
         };
         let slopes = of_part.over_points(Kernel::Slopes);
         let taken =
-            arch.dispatch(Pursuit { tile: &self.tile, bundles, sight, slopes, last, points, scratch });
+            arch.dispatch(Pursuit { tile: &self.tile, start, bundles, sight, slopes, last, points, scratch });
         counters.trace_evaluations += (taken.slopes + taken.last) as u64;
         if takes_gradients {
             counters.gradient_evaluations += taken.last as u64;
@@ -200,11 +206,6 @@ impl Subdivision<'_> {
         }
         Some([wanted, reach])
     }
-}
-
-/// Numbers from a whole or half one on, one apart. Exact.
-fn halves_from(first: f64) -> impl Iterator<Item = f64> {
-    std::iter::successors(Some(first), |number| Some(number + 1.0))
 }
 
 /// What is in both; it ends before it starts when nothing is.

@@ -32,7 +32,7 @@ fn ends_on_a_sphere(with_normals: bool, run: impl Fn(Pursuit<'_>) -> Taken) -> E
     let sight = Sight { inverse: -0.5, unevenness: 0.3, bend: 0.5, blur: 1e-15, tolerance: 1e-12 };
     let start = Start::new(&model, (3.5, 3.5), Span { start: 4.0, end: 4.4 });
     let mut sheaf = Sheaf::default();
-    (0..8).for_each(|row| sheaf.add(((0, row), 8 * row), &[true; 8], &start));
+    (0..8).for_each(|row| sheaf.add((0, row), &[true; 8], &start));
     let bundles = sheaf.take([Span::default(); 2]);
     for bundle in &mut *bundles {
         bundle.clip(|column, row| {
@@ -56,6 +56,7 @@ fn ends_on_a_sphere(with_normals: bool, run: impl Fn(Pursuit<'_>) -> Taken) -> E
     let (mut points, mut scratch) = (PointBatch::default(), Scratch::default());
     let taken = run(Pursuit {
         tile: &tile,
+        start: &start,
         bundles,
         sight: &sight,
         slopes: &*slopes,
@@ -78,8 +79,9 @@ fn normals_are_those_of_gradients_next_to_the_hit_alone() {
     let mut sheaf = Sheaf::default();
     let model = Model { t: 1.0, by_column: 0.0, by_row: 0.0, uncertainty: 0.1 };
     let start = Start::new(&model, (0.0, 0.0), wanted);
-    sheaf.add(((1, 0), 1), &[true], &start);
+    sheaf.add((1, 0), &[true], &start);
     let [bundle] = sheaf.take([wanted, reach]) else { panic!("one ray is one bundle") };
+    bundle.places[0] = 1;
     // F is t − 1, and was not taken near its root.
     (bundle.t[0], bundle.inverse[0]) = (1.0 + 1e-6, 1.0);
     let sight = Sight { inverse: 1.0, unevenness: 1e-9, bend: 1e-9, blur: 0.0, tolerance: 1e-12 };
