@@ -29,6 +29,12 @@ impl<'t> Cursor<'t> {
         self.items[(self.next + 1).min(self.items.len() - 1)]
     }
 
+    /// The first item from here on that is not the end of a line.
+    pub(super) fn next_on_lines(&self) -> Item<'t> {
+        let rest = &self.items[self.next..];
+        rest.iter().find(|item| item.kind != Kind::newline).copied().unwrap_or(self.peek())
+    }
+
     /// The item before [`Cursor::peek`].
     pub(super) fn previous(&self) -> Option<Item<'t>> {
         self.next.checked_sub(1).map(|place| self.items[place])

@@ -197,7 +197,7 @@ impl<'t> Reader<'_, 't> {
             let item = self.cursor.peek();
             let inside = !self.brackets.is_empty();
             match item.kind {
-                Kind::newline if inside => self.cursor.advance(),
+                Kind::newline if inside || self.goes_on() => self.cursor.advance(),
                 Kind::newline | Kind::semicolon | Kind::EOI if !inside => return Ok(false),
                 Kind::equal | Kind::double_equal if !inside && self.place == Place::Formula => {
                     return Ok(false);
@@ -220,6 +220,15 @@ impl<'t> Reader<'_, 't> {
                     return Ok(true);
                 }
             }
+        }
+    }
+
+    /// Whether a line that ends here goes on in the next one, since that begins with an operator that has its left operand here. A sign after
+    /// a definition begins the formula.
+    fn goes_on(&self) -> bool {
+        match self.cursor.next_on_lines().kind {
+            Kind::plus | Kind::minus | Kind::equal => self.place == Place::Formula,
+            kind => infix_of(kind).is_some(),
         }
     }
 

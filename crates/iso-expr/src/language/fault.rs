@@ -9,6 +9,10 @@ use super::item::{Item, Kind, shortened};
 use super::scope::{Parameters, Scope};
 use super::suggestion::suggestion;
 
+/// How statements are parted.
+const WHERE_LINES_END: &str = "a statement ends with its line, unless an operator stands at the end or at the start of the next one, or \
+                               inside parentheses";
+
 /// A name that means nothing; `next` stands after it. It may begin a statement and be all of an equation's left side, but for arguments.
 pub(super) fn unknown_name(
     item: &Item<'_>,
@@ -153,9 +157,7 @@ pub(super) fn missing_operand(
             let is_comment = item.text == "/" && before.is_some_and(|before| before.text == "/");
             let help = match (is_comment, follows_line) {
                 (true, _) => Some("comments begin with `#`"),
-                (_, true) => Some(
-                    "a statement ends with its line, unless the line ends with an operator or inside parentheses",
-                ),
+                (_, true) => Some(WHERE_LINES_END),
                 _ => None,
             };
             let help = help.map(str::to_owned);
@@ -194,9 +196,7 @@ pub(super) fn second_formula(span: Range<usize>, both_are_equations: bool) -> Fo
     match both_are_equations {
         true => FormulaError::new(FormulaErrorKind::TwoEquations, span)
             .with_help("a picture of both is the product of their left sides, each less its right side"),
-        false => FormulaError::new(FormulaErrorKind::TwoFormulas, span).with_help(
-            "a statement ends with its line, unless the line ends with an operator or inside parentheses; \
-             definitions are written with `:=`",
-        ),
+        false => FormulaError::new(FormulaErrorKind::TwoFormulas, span)
+            .with_help(format!("{WHERE_LINES_END}; definitions are written with `:=`")),
     }
 }

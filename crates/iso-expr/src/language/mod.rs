@@ -10,7 +10,8 @@
 //!
 //! A formula is an equation, `lhs = rhs` or `lhs == rhs`, or an expression whose surfaces are its levels. Definitions stand
 //! beside it in any order, parted by `;` or new lines: values, which are parameters when no coordinate counts in them, and
-//! functions. A line goes on after an operator and inside parentheses.
+//! functions. A line goes on after an operator, before one that begins the next line, and inside parentheses; but a sign at the start of a
+//! line that follows a definition begins the formula.
 //!
 //! | written | meaning |
 //! |---|---|
