@@ -141,3 +141,69 @@ fn mean_value(bounds: &Bounds, jet: &Jet, at_center: Decorated) -> Interval {
     }
     value
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use glam::DVec3;
+    use iso_expr::random::Random;
+    use iso_expr::{Ast, Engine, Interpreter};
+
+    use super::*;
+    use crate::Surface;
+
+    /// What is multiplied with what is zero at a point, some of it with poles, jumps, corners and gaps.
+    const FACTORS: [&str; 10] = [
+        "1",
+        "x*y - 2",
+        "sin(3y)",
+        "1/(x - 0.3)",
+        "floor(2z) + 0.5",
+        "sqrt(x + y + 1)",
+        "exp(-z^2) - 0.5",
+        "abs(x - z)",
+        "tan(2z)",
+        "max(x, y^3, z - 1)",
+    ];
+
+    /// All cells that hold a root of F, on their faces as well, are open.
+    #[test]
+    fn no_cell_that_holds_a_root_is_empty() {
+        let mut random = Random::new(31);
+        let region = Region::new(DVec3::splat(-2.0), DVec3::splat(2.0)).unwrap();
+        let mut scratch = Scratch::default();
+        let (mut roots, mut open, mut empty) = (0, 0, 0);
+        for _ in 0..300 {
+            // In cells, on their faces, and at their corners.
+            let [x, y, z] = [(); 3].map(|()| (random.below(257) as f64 - 128.0) / 64.0);
+            let [a, b, c] = [(); 3].map(|()| random.choose(&FACTORS));
+            let formula = format!("(x - ({x}))*({a}) + (y - ({y}))*({b}) + (z - ({z}))*({c})");
+            let program = Ast::parse(&formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
+            let mut value = [f64::NAN];
+            Interpreter.point(&program).unwrap().evaluate(&mut scratch, x, y, z, &mut value);
+            if value != [0.0] {
+                continue;
+            }
+            roots += 1;
+            let kernels = Kernels::of(&Surface::new(Arc::new(Interpreter), program)).unwrap();
+            let (cells, mut evaluations) = (Cells::new(&region), 0);
+            let mut ahead = vec![Cell::REGION];
+            while let Some(cell) = ahead.pop() {
+                let found = cells.empty_parts(&kernels, &mut scratch, &mut evaluations, cell);
+                for number in 0..PARTS {
+                    let (part, is_empty) = (cell.part(number), found >> number & 1 == 1);
+                    let sides = cells.bounds(part).into_iter().zip([x, y, z]);
+                    let holds_root = sides.into_iter().all(|(side, at)| side.lo <= at && at <= side.hi);
+                    assert!(!holds_root || !is_empty, "{part:?} of {formula}");
+                    open += usize::from(holds_root);
+                    empty += usize::from(is_empty);
+                    if holds_root && part.depth < DEPTH {
+                        ahead.push(part);
+                    }
+                }
+            }
+        }
+        assert!(roots > 200 && open > 5 * roots && empty > roots, "{roots}, {open}, {empty}");
+    }
+}
