@@ -145,6 +145,27 @@ fn nothing_is_left_of_a_picture_that_is_drawn_over() {
     }
 }
 
+/// Whether other rays of a tile meet the surface or not.
+#[test]
+fn pixels_in_which_nothing_is_found_are_the_same_everywhere() {
+    let size = Size::new(320, 130).unwrap();
+    let picture = picture(size, 1);
+    let bits = |pixel: usize| {
+        let (depth, point, normal) = (picture.depth[pixel], picture.points[pixel], picture.normals[pixel]);
+        (depth.to_bits(), point.to_array().map(f64::to_bits), normal.to_array().map(f32::to_bits))
+    };
+    let [far, near] = [size.offset(0, 0), size.offset(130, 2)];
+    let is_met = |column: u32| {
+        let mut pixels = (0..64).flat_map(|row| (0..64).map(move |x| size.offset(column + x, row)));
+        pixels.any(|pixel| picture.statuses[pixel] == Status::Hit)
+    };
+    assert!(!is_met(0) && is_met(128), "a tile without a hit, and one with hits");
+    assert!([far, near].iter().all(|pixel| picture.statuses[*pixel] == Status::Miss));
+    assert!(picture.depth[far].is_nan() && picture.points[far].is_nan() && picture.normals[far].is_nan());
+    let mut misses = (0..size.pixels()).filter(|pixel| picture.statuses[*pixel] == Status::Miss);
+    assert!(misses.all(|pixel| bits(pixel) == bits(far)));
+}
+
 /// Pixels by status, counted one status after the other.
 fn counts(statuses: &[Status]) -> StatusCounts {
     let of = |status| statuses.iter().filter(|found| **found == status).count() as u64;
