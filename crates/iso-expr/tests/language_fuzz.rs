@@ -34,6 +34,7 @@ proptest! {
         let row: String = rows.into_iter().flat_map(|(operator, operand)| [operator, operand]).collect();
         prints_as_it_reads(&format!("a := 1; f(u) := u^a; if(x{row}, 1, 2)"));
         prints_as_it_reads(&format!("a := 1; f(u) := u^a; x{row}"));
+        prints_as_it_reads(&format!("a := 1; f(u) := u^a; y where x{row} > 0"));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::domain::Domain;
 use super::function::Function;
 use crate::{Axis, Constant};
 
@@ -16,6 +17,8 @@ pub struct Ast {
     pub(super) left: Tree,
     /// The right side of an equation.
     pub(super) right: Option<Tree>,
+    /// Where the formula counts, unless that is everywhere.
+    pub(super) domain: Option<Domain>,
 }
 
 /// `name := body` or `name(parameters) := body`.

@@ -189,6 +189,9 @@ pub enum FormulaErrorKind {
     /// An inequality, or another condition, where an equation should stand.
     #[error("this is a condition, but a surface is given by an equation")]
     Condition,
+    /// What follows `where` is not made of inequalities.
+    #[error("`where` needs inequalities")]
+    NoDomain,
     /// `=` inside parentheses, a condition or a definition.
     #[error("the equality sign `=` cannot stand inside an expression")]
     EquationInside,

@@ -125,6 +125,16 @@ impl<'t> Reader<'_, 't> {
                 }
                 Kind::open => self.open(BracketKind::Parenthesis, item),
                 Kind::bar => self.open(BracketKind::Bar, item),
+                // Elsewhere it is a function.
+                Kind::cut if self.cursor.second().kind == Kind::open => {
+                    return Err(fault::unknown_name(
+                        &item,
+                        &self.cursor.second(),
+                        false,
+                        self.scope,
+                        self.parameters,
+                    ));
+                }
                 Kind::name => {
                     if self.read_name(&item)? {
                         return Ok(());
@@ -173,7 +183,7 @@ impl<'t> Reader<'_, 't> {
         if self.brackets.is_empty() && self.place == Place::Formula {
             let error = FormulaError::new(FormulaErrorKind::Condition, item.span());
             return Err(
-                error.with_help("write `=` between two sides; conditions belong into `if(condition, a, b)`")
+                error.with_help("write `=` between two sides; conditions belong into `if(condition, a, b)`, or behind `where`")
             );
         }
         Ok(())
@@ -199,7 +209,7 @@ impl<'t> Reader<'_, 't> {
             match item.kind {
                 Kind::newline if inside || self.goes_on() => self.cursor.advance(),
                 Kind::newline | Kind::semicolon | Kind::EOI if !inside => return Ok(false),
-                Kind::equal | Kind::double_equal if !inside && self.place == Place::Formula => {
+                Kind::equal | Kind::double_equal | Kind::cut if !inside && self.place == Place::Formula => {
                     return Ok(false);
                 }
                 Kind::superscript => self.read_superscript(&item)?,
@@ -223,11 +233,11 @@ impl<'t> Reader<'_, 't> {
         }
     }
 
-    /// Whether a line that ends here goes on in the next one, since that begins with an operator that has its left operand here. A sign after
+    /// Whether a line that ends here goes on in the next one, since that begins with what has its left side here. A sign after
     /// a definition begins the formula.
     fn goes_on(&self) -> bool {
         match self.cursor.next_on_lines().kind {
-            Kind::plus | Kind::minus | Kind::equal => self.place == Place::Formula,
+            Kind::plus | Kind::minus | Kind::equal | Kind::cut => self.place == Place::Formula,
             kind => infix_of(kind).is_some(),
         }
     }

@@ -112,7 +112,8 @@ pub(super) fn stray(item: &Item<'_>) -> FormulaError {
     let character = item.text.chars().next().unwrap_or_default();
     let help = match character {
         '%' => Some("write `mod(a, b)` for the remainder of a divided by b, with the sign of b"),
-        '[' | ']' | '{' | '}' => Some("use parentheses `(` `)`"),
+        '[' | ']' => Some("use parentheses `(` `)`"),
+        '{' | '}' => Some("use parentheses `(` `)`; a part of a surface is `F = C where x > 0`"),
         '&' => Some(
             "write `and` between conditions; `max(F, G)` is where both F and G are negative, `min(F, G)` where one of them is",
         ),
@@ -172,8 +173,11 @@ fn is_statement_start(item: &Item<'_>) -> bool {
 
 /// An operand that follows another, but cannot be its factor.
 pub(super) fn missing_operator(item: &Item<'_>) -> FormulaError {
-    FormulaError::new(FormulaErrorKind::MissingOperator { found: item.shown() }, item.span())
-        .with_help("a number stands before what it multiplies; write `*` or `^` between two factors")
+    let help = match item.kind {
+        Kind::cut => "one `where` stands behind the formula; `and` joins conditions",
+        _ => "a number stands before what it multiplies; write `*` or `^` between two factors",
+    };
+    FormulaError::new(FormulaErrorKind::MissingOperator { found: item.shown() }, item.span()).with_help(help)
 }
 
 /// `:=` in the middle of an expression.
@@ -189,6 +193,12 @@ pub(super) fn equation_inside(item: &Item<'_>, in_brackets: bool) -> FormulaErro
         false => "write `==` to compare; the equation is a statement after the definitions",
     };
     FormulaError::new(FormulaErrorKind::EquationInside, item.span()).with_help(help)
+}
+
+/// Something else than inequalities behind `where`.
+pub(super) fn no_domain(span: Range<usize>) -> FormulaError {
+    FormulaError::new(FormulaErrorKind::NoDomain, span)
+        .with_help("join them by `and`, `or` and `not`: `where x^2 + y^2 + z^2 < 4 and z > 0`")
 }
 
 /// A second statement that is no definition.

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use super::ast::{Ast, Definition, DefinitionId, Infix, Prefix, Term, TermId, Tree};
 use super::builder::Builder;
+use super::domain::Domain;
 use super::error::{FormulaError, FormulaErrorKind};
 use super::function::{Function, prelude};
 use super::limits;
@@ -74,13 +75,16 @@ impl Ast {
         }
         let parameters = lowering.parameters()?;
         let left = lowering.tree(&self.left)?;
-        let output = match &self.right {
+        let mut output = match &self.right {
             Some(right) => {
                 let right = lowering.tree(right)?;
                 lowering.builder.apply(Operation::Subtract, &[left, right])?
             }
             None => left,
         };
+        if let Some(Domain { margin, .. }) = &self.domain {
+            output = lowering.cut(output, margin)?;
+        }
         Ok(Formula {
             value: lowering.builder.value(output),
             program: lowering.builder.finish(output),
@@ -183,6 +187,15 @@ impl<'a> Lowering<'a> {
     /// Lowers a side of the formula.
     fn tree(&mut self, tree: &'a Tree) -> Result<NodeId, FormulaError> {
         self.run(Frame { tree, nodes: Vec::new(), instance: None })
+    }
+
+    /// F where `margin` is not negative, and nothing elsewhere: F + 0·√margin.
+    fn cut(&mut self, value: NodeId, margin: &'a Tree) -> Result<NodeId, FormulaError> {
+        let margin = self.tree(margin)?;
+        let root = self.builder.apply(Operation::SquareRoot, &[margin])?;
+        let zero = self.builder.literal(0.0);
+        let nothing = self.builder.apply(Operation::Multiply, &[zero, root])?;
+        self.builder.apply(Operation::Add, &[value, nothing])
     }
 
     /// Lowers one tree, and on the way each instance of a definition that it needs, once.

@@ -22,6 +22,8 @@
 //! | `a^b`, `a**b`, `a²` | from right to left; the exponent may have a sign: `2^-3` |
 //! | `f(a, b)`, `\|a\|`, `(a)` | a name that is no function is a factor: `x(y+1)` is x·(y+1) |
 //!
+//! `where` and a condition behind a formula leave of its surface what lies where that holds or just ceases to hold.
+//!
 //! An integer exponent that is constant means repeated multiplication, whatever the base; any other power is undefined
 //! for a negative base. `e^a` is `exp(a)`. `round` rounds ties to even, and `mod(a, b)` has the sign of b.
 //! `grammar.pest` lists the items of the language, `prelude.iso` its derived functions.
@@ -30,6 +32,7 @@ mod ast;
 mod builder;
 mod cursor;
 mod definition;
+mod domain;
 mod elsewhere;
 mod error;
 mod expression;

@@ -3,6 +3,7 @@
 use std::fmt::{self, Display, Formatter};
 
 use super::ast::{Ast, TermId, Tree};
+use super::domain::Domain;
 use super::print::{Names, write_leaf};
 
 /// Terms deeper than this are left out, so that the outline of a long sum does not grow with the square of its length.
@@ -35,13 +36,18 @@ impl Display for Outline<'_> {
         }
         let names = Names { definitions, parameters: &[] };
         match &self.ast.right {
-            None => write_tree(f, &self.ast.left, names, &[]),
+            None => write_tree(f, &self.ast.left, names, &[])?,
             Some(right) => {
                 writeln!(f, "=")?;
                 write_tree(f, &self.ast.left, names, &[false])?;
-                write_tree(f, right, names, &[true])
+                write_tree(f, right, names, &[true])?;
             }
         }
+        if let Some(Domain { condition, .. }) = &self.ast.domain {
+            writeln!(f, "where")?;
+            write_tree(f, condition, names, &[true])?;
+        }
+        Ok(())
     }
 }
 
@@ -83,7 +89,7 @@ mod tests {
 
     #[test]
     fn an_outline_shows_who_is_an_operand_of_whom() {
-        let ast = Ast::parse("f(u) := -u; a := 2; max(f(x), a, 3) = y^2").unwrap();
+        let ast = Ast::parse("f(u) := -u; a := 2; max(f(x), a, 3) = y^2 where x < a").unwrap();
         let expected = "\
 f(u) :=
 └─ negate
@@ -99,6 +105,10 @@ a :=
 └─ ^
    ├─ y
    └─ 2
+where
+└─ <
+   ├─ x
+   └─ a
 ";
         assert_eq!(ast.outline().to_string(), expected);
     }

@@ -3,6 +3,7 @@
 use super::ast::{Ast, Definition, Tree};
 use super::cursor::Cursor;
 use super::definition::mark_constants;
+use super::domain::Domain;
 use super::error::{FormulaError, FormulaErrorKind};
 use super::expression::{Place, read_expression};
 use super::fault;
@@ -41,7 +42,7 @@ impl Ast {
         let mut definitions = statements.definitions;
         mark_constants(&mut definitions)?;
         match statements.formula {
-            Some((left, right)) => Ok(Self { definitions, left, right }),
+            Some((left, right)) => Ok(Self { definitions, left, right, domain: statements.domain }),
             None if definitions.is_empty() => Err(FormulaError::new(FormulaErrorKind::Empty, 0..0)
                 .with_help("write an equation such as `x^2 + y^2 + z^2 = 1`")),
             None => Err(FormulaError::new(FormulaErrorKind::MissingFormula, text.len()..text.len())
@@ -67,12 +68,13 @@ struct Statements<'t> {
     scope: &'t Scope<'t>,
     definitions: Vec<Definition>,
     formula: Option<(Tree, Option<Tree>)>,
+    domain: Option<Domain>,
 }
 
 impl<'t> Statements<'t> {
     fn new(items: Vec<Item<'t>>, heads: &'t [Head<'t>], scope: &'t Scope<'t>) -> Self {
         let cursor = Cursor::new(items);
-        Self { cursor, heads: heads.iter(), scope, definitions: Vec::new(), formula: None }
+        Self { cursor, heads: heads.iter(), scope, definitions: Vec::new(), formula: None, domain: None }
     }
 
     fn read(&mut self) -> Result<(), FormulaError> {
@@ -110,19 +112,34 @@ impl<'t> Statements<'t> {
             }
             _ => None,
         };
+        let domain = self.read_domain()?;
         let end = self.cursor.peek();
         if matches!(end.kind, Kind::equal | Kind::double_equal) {
             return Err(FormulaError::new(FormulaErrorKind::TwoEquations, end.span())
                 .with_help("keep one equality sign; in a condition, `==` stands inside `if(…)`"));
         }
         match &self.formula {
-            None => self.formula = Some((left, right)),
+            None => (self.formula, self.domain) = (Some((left, right)), domain),
             Some((_, other)) => {
                 let both = other.is_some() && right.is_some();
                 return Err(fault::second_formula(first.start..end.start, both));
             }
         }
         Ok(())
+    }
+
+    fn read_domain(&mut self) -> Result<Option<Domain>, FormulaError> {
+        let cut = self.cursor.peek();
+        if cut.kind != Kind::cut {
+            return Ok(None);
+        }
+        self.cursor.advance();
+        if matches!(self.cursor.next_on_lines().kind, Kind::semicolon | Kind::EOI) {
+            return Err(fault::no_domain(cut.span()));
+        }
+        let condition = read_expression(&mut self.cursor, self.scope, &Parameters::new(), Place::Definition)?;
+        let domain = Domain::new(condition);
+        domain.map(Some).ok_or_else(|| fault::no_domain(cut.start..self.cursor.peek().start))
     }
 
     fn read_side(&mut self) -> Result<Tree, FormulaError> {

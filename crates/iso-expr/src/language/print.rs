@@ -3,6 +3,7 @@
 use std::fmt::{self, Display, Formatter};
 
 use super::ast::{Ast, Definition, Infix, Precedence, Prefix, Term, TermId, Tree};
+use super::domain::Domain;
 
 /// Parses to an equal tree, as long as the text stays within the limit of length.
 impl Display for Ast {
@@ -23,6 +24,10 @@ impl Display for Ast {
         if let Some(right) = &self.right {
             f.write_str(" = ")?;
             write_expression(f, right, Precedence::Sum, names)?;
+        }
+        if let Some(Domain { condition, .. }) = &self.domain {
+            f.write_str(" where ")?;
+            write_expression(f, condition, Precedence::Or, names)?;
         }
         Ok(())
     }
@@ -192,8 +197,14 @@ mod tests {
         (Function::Defined(DefinitionId(1)), 2),
     ];
 
+    fn drawn(sketch: &Sketch) -> Tree {
+        let mut tree = Tree::default();
+        sketch.draw(&mut tree);
+        tree
+    }
+
     /// Expressions in which `a` stands for definition 0 and `f` for definition 1.
-    fn expressions(uses_definitions: bool) -> impl Strategy<Value = Tree> {
+    fn expressions(uses_definitions: bool) -> impl Strategy<Value = Sketch> {
         let numbers = prop_oneof![(0u8..9).prop_map(f64::from), any::<f64>().prop_map(f64::abs)];
         let numbers = numbers.prop_filter("literals are finite", |value| value.is_finite());
         let leaf = prop_oneof![
@@ -203,7 +214,7 @@ mod tests {
             Just(if uses_definitions { Term::Value(DefinitionId(0)) } else { Term::Number(0.5) }),
         ];
         let functions = &FUNCTIONS[..FUNCTIONS.len() - usize::from(!uses_definitions)];
-        let sketch = leaf.prop_map(Sketch::Leaf).prop_recursive(6, 48, 4, move |inner| {
+        leaf.prop_map(Sketch::Leaf).prop_recursive(6, 48, 4, move |inner| {
             let pair = (inner.clone(), inner.clone());
             let arguments = proptest::collection::vec(inner.clone(), 4);
             prop_oneof![
@@ -214,12 +225,27 @@ mod tests {
                 (proptest::sample::select(functions), arguments)
                     .prop_map(|((function, count), it)| Sketch::Call(function, it[..count].to_vec())),
             ]
-        });
-        sketch.prop_map(|sketch| {
-            let mut tree = Tree::default();
-            sketch.draw(&mut tree);
-            tree
         })
+    }
+
+    /// Two operands with one of these operators between them.
+    fn joined(
+        infixes: &'static [Infix],
+        operands: BoxedStrategy<(Sketch, Sketch)>,
+    ) -> impl Strategy<Value = Sketch> {
+        (proptest::sample::select(infixes), operands)
+            .prop_map(|(infix, it)| Sketch::Infix(infix, Box::new(it)))
+    }
+
+    /// Conditions that cut a surface.
+    fn domains() -> impl Strategy<Value = Domain> {
+        let pair = (expressions(true), expressions(true));
+        let inequality = joined(&INFIXES[2..6], pair.boxed());
+        let condition = inequality.prop_recursive(3, 6, 2, |inner| {
+            let negated = inner.clone().prop_map(|it| Sketch::Prefix(Prefix::Not, Box::new(it)));
+            prop_oneof![negated, joined(&INFIXES[..2], (inner.clone(), inner).boxed())]
+        });
+        condition.prop_map(|sketch| Domain::new(drawn(&sketch)).expect("it is made of inequalities"))
     }
 
     fn definition(name: &str, parameters: &[&str], body: Tree) -> Definition {
@@ -236,9 +262,11 @@ mod tests {
             body in expressions(false),
             left in expressions(true),
             right in proptest::option::of(expressions(true)),
+            domain in proptest::option::of(domains()),
         ) {
-            let definitions = vec![definition("a", &[], value), definition("f", &["u", "x"], with_parameters(body))];
-            let ast = Ast { definitions, left, right };
+            let body = with_parameters(drawn(&body));
+            let definitions = vec![definition("a", &[], drawn(&value)), definition("f", &["u", "x"], body)];
+            let ast = Ast { definitions, left: drawn(&left), right: right.as_ref().map(drawn), domain };
             let text = ast.to_string();
             let again = Ast::parse(&text).map_err(|error| TestCaseError::fail(format!("{text}: {error}")))?;
             prop_assert_eq!(&again, &ast, "{}", text);

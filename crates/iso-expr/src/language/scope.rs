@@ -9,7 +9,7 @@ use super::item::{Head, Item};
 use crate::{Axis, Operation};
 
 /// Words that no definition may take.
-const KEYWORDS: [&str; 3] = ["and", "or", "not"];
+const KEYWORDS: [&str; 4] = ["and", "or", "not", "where"];
 
 /// The names that the formula defines, beside those of the language.
 pub(super) struct Scope<'t> {

@@ -43,6 +43,7 @@ pub(crate) const PIECES: &[&str] = &[
     "and",
     "or",
     "not",
+    "where",
     ":=",
     "a :=",
     "f(u) :=",
