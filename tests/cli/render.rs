@@ -110,6 +110,11 @@ fn notes_say_what_a_picture_does_not_show() {
         (SPHERE, &away, "the camera looks past the box"),
         ("(x - 0.1)^2 + y^2 + z^2 = 0", &["--box", "-2,2"], "it may consist of points and curves"),
         ("x^2 + y^2 = 1", &[], "the surface goes on outside of the box that is shown, x -1.09..1.09"),
+        (
+            "z = tan(x*y)",
+            &[],
+            "it is not known whether the surface goes on outside of the box that is shown, x -2..2",
+        ),
         ("floor(x^2 + y^2 + z^2) = 3", &[], "in grey: --show-status paints them magenta"),
         ("x^2 + y^2 + z^2 = 1e-8", &["--box", "-2,2", "--method", "grid"], "--method certified proves"),
     ] {

@@ -33,8 +33,8 @@ impl Drawn<'_> {
             notes.push(format!("nothing is seen: {}", self.why_nothing()?));
         } else if self.surface.program().arguments() == 0 {
             notes.push(format!("{CONSTANT}: all of the box is the surface"));
-        } else if self.fitted.goes_on {
-            notes.push(goes_on_outside("that is shown", &self.fitted.region));
+        } else {
+            notes.extend(outside("that is shown", &self.fitted));
         }
         Ok(notes)
     }
@@ -67,9 +67,14 @@ impl Drawn<'_> {
     }
 }
 
-/// That the surface goes on outside of a region that was fitted, a box of which `role` says what it is for.
-pub(crate) fn goes_on_outside(role: &str, region: &Region) -> String {
-    format!("the surface goes on outside of the box {role}, {}: --box sets another", extent(region))
+/// That the surface goes on outside of a region that was fitted, or may go on: a box of which `role` says what it is for.
+pub(crate) fn outside(role: &str, fitted: &Fitted) -> Option<String> {
+    let said = match fitted {
+        Fitted { goes_on: true, .. } => "the surface goes on",
+        Fitted { is_cut_off: true, .. } => "it is not known whether the surface goes on",
+        _ => return None,
+    };
+    Some(format!("{said} outside of the box {role}, {}: --box sets another", extent(&fitted.region)))
 }
 
 /// How far a region reaches along each axis, in three digits.

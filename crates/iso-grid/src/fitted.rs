@@ -34,6 +34,9 @@ pub struct Fitted {
     pub region: Region,
     /// Whether the surface certainly has points outside of it.
     pub goes_on: bool,
+    /// Whether the surface may reach a face of the cube in which it was found, as far as intervals tell: where nothing is certain outside, it may
+    /// go on all the same.
+    pub is_cut_off: bool,
     /// A sphere around the points at which F − C is found to change its sign in the region, if any are. What the surface reaches beyond is thin or
     /// small; at poles the sign changes, too.
     pub sphere: Option<Sphere>,
@@ -59,7 +62,7 @@ impl Glimpse {
 /// A region that was chosen, and not drawn around anything.
 impl From<Region> for Fitted {
     fn from(region: Region) -> Self {
-        Self { region, goes_on: false, sphere: None }
+        Self { region, goes_on: false, is_cut_off: false, sphere: None }
     }
 }
 
@@ -82,7 +85,12 @@ impl Fitted {
             (Some(sphere), Some(other)) => Some(sphere.hull(&other)),
             (one, other) => one.or(other),
         };
-        Ok(Self { region, goes_on: is_both && self.goes_on && other.goes_on, sphere })
+        Ok(Self {
+            region,
+            goes_on: is_both && self.goes_on && other.goes_on,
+            is_cut_off: is_both && (self.is_cut_off || other.is_cut_off),
+            sphere,
+        })
     }
 
     /// A region close around the surface, or around a part of it near the origin.
@@ -128,12 +136,12 @@ impl Fitted {
                 goes_on = has_more();
             }
         }
-        let Some((_, Glimpse { held, .. })) = best else {
-            return Ok(Self { region: Region::standard(), goes_on, sphere: None });
+        let Some((_, Glimpse { held, axes_met, .. })) = best else {
+            return Ok(Self { region: Region::standard(), goes_on, is_cut_off: false, sphere: None });
         };
         let (outer, cells, region) = held.closed_in((kernel, &is_stopped), workspace);
         let sphere = outer.sphere_around_surface(cells, (kernel, &is_stopped), workspace);
-        Ok(Self { region, goes_on, sphere })
+        Ok(Self { region, goes_on, is_cut_off: axes_met > 0, sphere })
     }
 }
 

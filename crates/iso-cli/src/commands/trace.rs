@@ -16,7 +16,7 @@ use crate::flags::TraceFlags;
 use crate::formula::{file_of, minus_level, understand};
 use crate::interruption::Interruption;
 use crate::method::{fitted_unless, method};
-use crate::notes::goes_on_outside;
+use crate::notes::outside;
 use crate::output::Destination;
 use crate::pictures::status_name;
 use crate::plan::plan_of_rays;
@@ -55,10 +55,12 @@ pub(crate) fn run(flags: TraceFlags) -> Result<(), Failure> {
         rows.try_for_each(|(ray, end)| table.row(fields(ray, end.as_ref())))?;
         table.finish()
     })?;
-    if fitted.goes_on && followed.iter().flatten().any(|(outcome, _)| *outcome == Outcome::Miss) {
+    let is_miss = |(outcome, _): &(Outcome, _)| *outcome == Outcome::Miss;
+    if let Some(note) = outside("in which rays are followed", &fitted)
+        && followed.iter().flatten().any(is_miss)
+    {
         // A note that nobody can read is no failure.
-        let _ =
-            writeln!(io::stderr(), "note: {}", goes_on_outside("in which rays are followed", &fitted.region));
+        let _ = writeln!(io::stderr(), "note: {note}");
     }
     interruption.check_done(unfinished, all, "rays")
 }

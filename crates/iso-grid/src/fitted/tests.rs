@@ -60,7 +60,10 @@ fn wide_intervals_at_the_faces_of_a_cube_do_not_cut_a_surface_off() {
     for (formula, reached) in [("x^2 + y^2 + z^2 - 1.9x*y = 1", side), (chair, 6.0)] {
         let Fitted { region, goes_on, .. } = around(formula);
         let [from, to] = [region.min(), region.max()].map(|corner| corner.x.abs());
-        assert!(!goes_on && from >= reached && to >= reached && from + to <= 16.0, "{region:?}");
+        assert!(
+            !goes_on && !around(formula).is_cut_off && from >= reached && to >= reached && from + to <= 16.0,
+            "{region:?}"
+        );
     }
 }
 
@@ -90,7 +93,19 @@ fn a_surface_that_goes_on_elsewhere_is_said_to() {
         "x^4 + y^4 + z^4 = 3*x^2 + 7",
         "x^2 + y^2 + z^2 = -1",
     ] {
-        assert!(!around(formula).goes_on, "{formula}");
+        let Fitted { goes_on, is_cut_off, .. } = around(formula);
+        assert!(!goes_on && !is_cut_off, "{formula}");
+    }
+}
+
+/// A sign that changes at a pole or at a jump proves nothing.
+#[test]
+fn a_surface_that_may_go_on_is_cut_off() {
+    for formula in ["z = tan(x*y)", "z = floor(x) + floor(y)", "z = mod(x, 1)"] {
+        let found = around(formula);
+        assert!(found.is_cut_off && !found.goes_on, "{formula}");
+        let other = around("x^2 + y^2 + z^2 = 100");
+        assert!(found.hull(&found).unwrap().is_cut_off && !found.hull(&other).unwrap().is_cut_off);
     }
 }
 
