@@ -97,6 +97,7 @@ fn read(formula: &str) -> Program {
 }
 
 /// A picture's rays, how many there are in a row, and the raster that they come from, if any.
+#[derive(Clone)]
 struct View {
     name: &'static str,
     rays: Vec<Ray>,
@@ -339,6 +340,54 @@ fn tiles_know_that_a_tiny_constant_is_not_zero() {
     for view in views(1.0, 24, 20) {
         for outcomes in together(&tracer, &view) {
             assert!(outcomes.iter().all(|outcome| *outcome == Outcome::Miss), "{}", view.name);
+        }
+    }
+}
+
+/// Brackets may be so wide that those of both roots of a face overlap one of another face.
+#[test]
+fn what_is_proven_coarsely_is_proven_narrowly_too() {
+    let view = {
+        let step = 0.9 / 65.0;
+        let (middle, right, down) = (-3.0 * DVec3::Z, step * DVec3::X, -step * DVec3::Y);
+        let raster = Raster::Parallel { middle, right, down, direction: DVec3::Z };
+        let rays = Tile::of(&raster, first(65, 65), 65, 65).rays().collect();
+        View { name: "along z", rays, width: 65, raster: Some(raster) }
+    };
+    let double = "u := z - 0.37y; min(max(u^2 + 100x^2 - 1e-8, -u - 40u^3, 0.02 - u), u^2 + 0.5x + 0.003)";
+    let inside_out =
+        "u := z - 0.37y; max(min(u^2 + 100x^2 - 1e-8, u + 40u^3, u - 0.02), -u^2 - 0.5x - 0.003)";
+    let scenes = SCENES.map(|(formula, half, _)| (formula, half, views(half, 24, 20).to_vec()));
+    let cases = [double, inside_out].map(|formula| (formula, 1.0, vec![view.clone()]));
+    for (formula, half, views) in cases.into_iter().chain(scenes) {
+        let program = read(formula);
+        for view in views {
+            let narrow = alone(&certified(&program, half), &view.rays);
+            for accuracy in [1e-2, 1e-4] {
+                let coarse = certified(&program, half).with_accuracy(accuracy);
+                for (number, (a, b)) in
+                    together(&coarse, &view).concat().iter().zip(narrow.iter().cycle()).enumerate()
+                {
+                    assert!(
+                        agree(*a, *b),
+                        "{formula}, {}, ray {number}, {accuracy}: {a:?}, {b:?}",
+                        view.name
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// The derivative is less than any double, and its product with the length of a ray is not.
+#[test]
+fn no_plane_is_lost_where_its_slope_underflows() {
+    let tracer = certified(&read("1e-200*(1e-130*x)"), 1e60);
+    for view in views(1e60, 45, 37) {
+        let alone = alone(&tracer, &view.rays);
+        assert!(alone.iter().any(|outcome| *outcome != Outcome::Miss) || view.name == "along an axis");
+        for outcomes in together(&tracer, &view) {
+            assert!(outcomes.iter().zip(&alone).all(|(a, b)| is_same(*a, *b)), "{}", view.name);
         }
     }
 }

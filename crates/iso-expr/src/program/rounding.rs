@@ -8,13 +8,16 @@ impl Program {
     /// The unit in which [`Program::with_rounding`] counts: half the distance of neighbouring doubles from 1 on, 2⁻⁵³.
     pub const ROUNDING_UNIT: f64 = 0.5 * f64::EPSILON;
 
+    /// By how much [`Program::with_rounding`] may be too low, since roundings have roundings themselves: 1 + 2⁻⁴⁰.
+    pub const ROUNDING_SLACK: f64 = 1.0 + 1.0 / (1_u64 << 40) as f64;
+
     /// The program that computes this one's only output F, then a bound of how far F is from its exact value when it is computed
     /// in doubles, in [units](Self::ROUNDING_UNIT) of rounding, and then ∂F/∂x, ∂F/∂y and ∂F/∂z.
     ///
     /// It is meant for boxes. Over a box on which F is continuous and bounded, its operations included
     /// ([`Decoration::Common`](crate::Decoration::Common)), and the other outputs are defined, what any engine computes for F at a
     /// point of the box is no farther from F at that point than the upper end of the second output, times the unit and
-    /// 1 + 2⁻⁴⁰.
+    /// the [slack](Self::ROUNDING_SLACK).
     ///
     /// The bound is ∑ |∂F/∂v|·|v| over all rounded operations with result v. To see that it holds, let the operations be rounded
     /// one after the other, all later ones being exact: each changes F by the rounding of its result, at most half an ulp,

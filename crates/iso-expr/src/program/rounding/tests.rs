@@ -36,7 +36,7 @@ fn bound(program: &Program, sides: [Interval; 3]) -> Option<f64> {
     let outputs = enclose(&*kernel, 5, sides);
     let is_known = outputs[0].decoration == Decoration::Common
         && outputs.iter().all(|output| output.decoration >= Decoration::Defined);
-    let bound = outputs[1].interval.hi * Program::ROUNDING_UNIT * (1.0 + 1e-12);
+    let bound = outputs[1].interval.hi * Program::ROUNDING_UNIT * Program::ROUNDING_SLACK;
     (is_known && bound.is_finite()).then_some(bound)
 }
 

@@ -23,7 +23,7 @@ pub(super) struct Bow {
     pub(super) slope_error: f64,
     /// −1 where this is said of −F, or else 1.
     pub(super) sign: f64,
-    /// Second derivatives along rays, their middle, half their width, and the largest size.
+    /// Second derivatives along rays, their middle, half their width, and the largest size; these two are more than what underflow may cost.
     pub(super) curvature: Interval,
     pub(super) middle: f64,
     pub(super) spread: f64,
@@ -57,11 +57,11 @@ impl Bow {
             sign,
             curvature,
             middle: 0.5 * (curvature.lo + curvature.hi),
-            spread: (1.0 + ROUNDING) * 0.5 * (curvature.hi - curvature.lo),
-            most: curvature.magnitude(),
+            spread: (1.0 + ROUNDING) * 0.5 * (curvature.hi - curvature.lo) + f64::MIN_POSITIVE,
+            most: curvature.magnitude() + f64::MIN_POSITIVE,
             twice_least: (2.0 - 16.0 * ROUNDING) * curvature.lo.max(0.0),
             slopes: slopes.map(signed),
-            error,
+            error: error + f64::MIN_POSITIVE,
             tolerance,
         })
     }

@@ -23,7 +23,9 @@ impl<S: Simd> Course<S> {
     #[inline(always)]
     pub(super) fn stays_above(&self, bow: &Bow) -> Mask<S> {
         let steepest = self.slope.abs() + self.slope_error;
-        (steepest * steepest).is_less((self.value - self.value_error) * self.value.all_be(bow.twice_least))
+        let risen = (self.value - self.value_error) * self.value.all_be(bow.twice_least);
+        // Both products may underflow.
+        (steepest * steepest).is_less(risen - self.value.all_be(f64::MIN_POSITIVE))
     }
 
     /// Leaves out what slopes are not.

@@ -188,10 +188,12 @@ impl Form {
         let across = value.slopes.x.abs() + value.slopes.y.abs();
         let form = Self {
             t,
-            value: Ball { middle: value.middle, radius: value.rest }.widened(ROUNDING * across),
+            value: Ball { middle: value.middle, radius: value.rest }
+                .widened(ROUNDING * across + f64::MIN_POSITIVE),
             by_column: each(value.slopes.x, beam.radii[0]),
             by_row: each(value.slopes.y, beam.radii[1]),
-            incline: Ball { middle: value.slopes.z / unit, radius: 0.0 }.widened(0.0),
+            // The quotient may underflow, and then is multiplied by as much as the stretch is long.
+            incline: Ball { middle: value.slopes.z / unit, radius: 0.0 }.widened(f64::MIN_POSITIVE),
             slope,
             across: (1.0 + ROUNDING) * across,
             reach,

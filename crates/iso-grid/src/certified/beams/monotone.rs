@@ -48,6 +48,10 @@ impl Part {
     /// What is left of a part on which F is monotone, where roots may lie.
     pub(super) fn narrowed(&self) -> Option<Self> {
         let (roots, stretch) = (self.form.roots(), self.stretch);
+        if roots.is_empty() {
+            // The form tells nothing of where they are, although F has a slope.
+            return Some(Self { ..*self });
+        }
         let stretch = Span { start: stretch.start.max(roots.lo), end: stretch.end.min(roots.hi) };
         (stretch.start <= stretch.end).then_some(Self { stretch, ..*self })
     }

@@ -37,7 +37,7 @@ impl Rounding {
     pub(super) fn error(&self, beam: &Beam, reach: Span) -> f64 {
         let way = reach.end * beam.directions.size;
         let points = self.gradient.dot(way + self.lo.abs().max(self.hi.abs()) + f64::MIN_POSITIVE);
-        (1.0 + ROUNDING) * Program::ROUNDING_UNIT * (self.of_values + points)
+        (1.0 + ROUNDING) * Program::ROUNDING_SLACK * Program::ROUNDING_UNIT * (self.of_values + points)
     }
 }
 
@@ -76,8 +76,10 @@ impl Subdivision<'_> {
     }
 }
 
-/// The sides of a box in which the points of its rays lie, which are computed by two roundings: it is two doubles larger at each
-/// side.
+/// The sides of a box in which points of rays lie as they are computed, two doubles larger at each side.
+///
+/// A point is computed by two roundings. That of the product is made up for by [`Beam::bounds_in_space`], or at a face of the region by two
+/// roundings of t, by which [`Clip::inner`](crate::certified::clip::Clip::inner) keeps away from it; that of the sum is less than a double.
 pub(super) fn outwards(lo: DVec3, hi: DVec3) -> [Interval; 3] {
     [0, 1, 2].map(|axis| Interval { lo: round_down(round_down(lo[axis])), hi: round_up(round_up(hi[axis])) })
 }

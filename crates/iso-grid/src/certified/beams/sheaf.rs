@@ -30,8 +30,8 @@ impl<'a> Start<'a> {
         let [least, most] = model.around(stretch);
         let size = least.abs() + most.abs() + model.t.abs();
         let columns = 1.0 / model.by_column;
-        let are_distinct =
-            DISTINCT * size < model.by_column.abs() && columns.is_finite() && model.by_row.is_finite();
+        let are_steps_finite = columns.is_finite() && model.by_column.is_finite() && model.by_row.is_finite();
+        let are_distinct = are_steps_finite && DISTINCT * size < model.by_column.abs();
         Self { model, middle, stretch, columns: are_distinct.then_some(columns) }
     }
 
@@ -62,6 +62,9 @@ impl<'a> Start<'a> {
     #[inline(always)]
     fn within(&self, [least, most]: [f64; 2], (column, row): (usize, usize), count: usize) -> Range<usize> {
         let first = self.at(column as f64, row as f64);
+        if !first.is_finite() {
+            return 0..count;
+        }
         let Some(columns) = self.columns else {
             let change = count as f64 * self.model.by_column.abs();
             let are_far = first + change < least || most < first - change;
@@ -203,6 +206,24 @@ mod tests {
             others += found.len() - likely.len();
         }
         assert!(fewest == 0 && most > 100 && others < 2000, "{fewest}..{most}, {others}");
+    }
+
+    #[test]
+    fn where_the_model_has_no_numbers_all_rays_are_likely() {
+        let stretch = Span { start: 5.0, end: 6.0 };
+        for [t, by_column, by_row] in [
+            [5.5, f64::INFINITY, 0.0],
+            [5.5, 0.1, f64::INFINITY],
+            [5.5, f64::NAN, 0.0],
+            [f64::NEG_INFINITY, 0.1, 0.0],
+            [f64::NAN, 0.1, 0.1],
+        ] {
+            let model = Model { t, by_column, by_row, uncertainty: 0.1 };
+            for first in [(0, 0), (3, 5)] {
+                let start = Start::new(&model, (3.5, 5.0), stretch);
+                assert_eq!(start.likely(first, 7), 0..7, "{model:?}");
+            }
+        }
     }
 
     #[test]

@@ -67,10 +67,10 @@ impl Roots {
 }
 
 impl Signs<'_> {
-    /// Goes on behind roots of faces whose brackets overlap.
+    /// Goes on behind roots whose brackets overlap those of others. A face that bends may have both of its roots among them.
     pub(super) fn pass(&mut self, roots: &[Root]) -> Event {
         let (before, known) = (self.made.sign(&self.signs), self.signs);
-        roots.iter().for_each(|root| self.signs[root.face] = -known[root.face]);
+        roots.iter().for_each(|root| self.signs[root.face] = -self.signs[root.face]);
         let is_other = self.made.sign(&self.signs) != before;
         // Where F is zero, one of those is that it may be.
         let met = || roots.iter().filter(|root| self.made.is_met(root.face));
@@ -227,6 +227,19 @@ mod tests {
         let middle = of(Extreme::Greatest, [least([0, 1]), least([1, 2]), least([0, 2])]);
         let roots = [root(0, 1.0, 1.2), root(1, 1.1, 1.3), root(2, 1.1, 1.2)];
         assert_eq!(passed(&middle, [1.0, 1.0, -1.0, 0.0], &roots), Event::Unclear);
+    }
+
+    /// A narrow face dips below zero and rises again while another one falls somewhere around.
+    #[test]
+    fn a_face_that_has_both_of_its_roots_among_others_is_as_it_was_before() {
+        let made = least([3]);
+        let made = of(Extreme::Least, [of(Extreme::Greatest, [0, 1, 2].map(Made::Face)), made]);
+        let made = &Combinations::new(&made, MOST);
+        let mut signs =
+            Signs { made, signs: POSITIVE, are_monotone: [false, true, true, true], tolerance: 0.5 };
+        assert_eq!(signs.pass(&[root(0, 1.0, 1.1), root(1, 1.05, 1.35), root(0, 1.3, 1.4)]), Event::Nothing);
+        assert_eq!(signs.signs, [1.0, -1.0, 1.0, 1.0]);
+        assert_eq!(signs.pass(&[root(2, 1.6, 1.7)]), Event::Nothing, "the first face is positive still");
     }
 
     #[test]
