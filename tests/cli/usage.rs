@@ -95,6 +95,16 @@ fn a_formula_without_a_command_is_told_which() {
 }
 
 #[test]
+fn a_formula_that_the_shell_has_parted_is_told_to_stand_in_quotes() {
+    let case = Case::new();
+    for parts in ["render x^2 + y^2 = 1", "explain x -y^2", "eval x y"] {
+        let parts: Vec<_> = parts.split(' ').collect();
+        case.run(&parts).exits(2).mentions("tip: a formula stands in quotes");
+    }
+    case.run(&["render", "x", "--sizes", "5"]).exits(2).mentions("'--size'");
+}
+
+#[test]
 fn pages_are_written_to_files() {
     let run = Case::new().run(&["stress", "--html", "-"]);
     run.exits(2).reports("error: `-` is standard output, where this cannot go\n  help: name a file\n");

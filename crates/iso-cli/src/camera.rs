@@ -1,6 +1,5 @@
 //! From the camera's flags to a view and a projection.
 
-use glam::DVec3;
 use iso_grid::Fitted;
 use iso_render::{Camera, CameraError, Projection, Size, View};
 
@@ -8,15 +7,18 @@ use crate::flags::CameraFlags;
 
 /// The camera that `flags` describe, for pictures of `size` that look into a region, and there at what is found of the surface.
 pub(crate) fn camera(flags: &CameraFlags, fitted: &Fitted, size: Size) -> Result<Camera, CameraError> {
-    Camera::looking_at(view(flags, fitted.center()), projection(flags), fitted, size)
+    Camera::looking_at(view(flags, fitted), projection(flags), fitted, size)
 }
 
-fn view(flags: &CameraFlags, middle: DVec3) -> View {
-    let View::Orbit { yaw, pitch, .. } = View::DEFAULT else {
+fn view(flags: &CameraFlags, fitted: &Fitted) -> View {
+    let is_default = flags.yaw.is_none() && flags.pitch.is_none();
+    let View::Orbit { yaw, pitch, .. } = (if is_default { View::of(fitted) } else { View::DEFAULT }) else {
         unreachable!("cameras orbit the region by default");
     };
     match flags.eye {
-        Some(eye) => View::LookAt { eye, target: flags.target.unwrap_or(middle), up: flags.up },
+        Some(eye) => {
+            View::LookAt { eye, target: flags.target.unwrap_or_else(|| fitted.center()), up: flags.up }
+        }
         None => View::Orbit {
             yaw: flags.yaw.unwrap_or(yaw),
             pitch: flags.pitch.unwrap_or(pitch),

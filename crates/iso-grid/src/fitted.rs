@@ -1,6 +1,7 @@
 //! A region for a surface of which nothing is known but its formula.
 
 mod cells;
+mod facing;
 mod sphere;
 
 use std::ops::Range;
@@ -10,6 +11,7 @@ use iso_expr::{BoxKernel, CompileError, Decorated};
 
 use crate::{Kernel, Region, RegionError, Surface, Workspace};
 use cells::{BEFORE, enclose};
+pub use facing::Facing;
 pub use sphere::Sphere;
 
 /// Half the sides of the cubes around the origin in which the surface is looked for, one after the other.
@@ -40,6 +42,8 @@ pub struct Fitted {
     /// A sphere around the points at which F − C is found to change its sign in the region, if any are. What the surface reaches beyond is thin or
     /// small; at poles the sign changes, too.
     pub sphere: Option<Sphere>,
+    /// Which way the surface faces there.
+    pub facing: Option<Facing>,
 }
 
 /// What may be seen of the surface in a cube.
@@ -62,7 +66,7 @@ impl Glimpse {
 /// A region that was chosen, and not drawn around anything.
 impl From<Region> for Fitted {
     fn from(region: Region) -> Self {
-        Self { region, goes_on: false, is_cut_off: false, sphere: None }
+        Self { region, goes_on: false, is_cut_off: false, sphere: None, facing: None }
     }
 }
 
@@ -85,11 +89,16 @@ impl Fitted {
             (Some(sphere), Some(other)) => Some(sphere.hull(&other)),
             (one, other) => one.or(other),
         };
+        let facing = match (self.facing, other.facing) {
+            (Some(facing), Some(other)) => Some(facing.hull(&other)),
+            (one, other) => one.or(other),
+        };
         Ok(Self {
             region,
             goes_on: is_both && self.goes_on && other.goes_on,
             is_cut_off: is_both && (self.is_cut_off || other.is_cut_off),
             sphere,
+            facing,
         })
     }
 
@@ -137,11 +146,11 @@ impl Fitted {
             }
         }
         let Some((_, Glimpse { held, axes_met, .. })) = best else {
-            return Ok(Self { region: Region::standard(), goes_on, is_cut_off: false, sphere: None });
+            return Ok(Self { goes_on, ..Region::standard().into() });
         };
         let (outer, cells, region) = held.closed_in((kernel, &is_stopped), workspace);
-        let sphere = outer.sphere_around_surface(cells, (kernel, &is_stopped), workspace);
-        Ok(Self { region, goes_on, is_cut_off: axes_met > 0, sphere })
+        let (sphere, facing) = outer.crossings(cells, (kernel, &is_stopped), workspace);
+        Ok(Self { region, goes_on, is_cut_off: axes_met > 0, sphere, facing })
     }
 }
 

@@ -27,7 +27,7 @@ mod tracer;
 pub use certified::Certified;
 pub use counters::Counters;
 pub use error::GridError;
-pub use fitted::{Fitted, Sphere};
+pub use fitted::{Facing, Fitted, Sphere};
 pub use kernel::Kernel;
 pub use method::Method;
 pub use normals::normals;

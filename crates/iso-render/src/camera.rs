@@ -49,9 +49,27 @@ pub enum Projection {
     },
 }
 
+/// The angles of the default view.
+const YAW: f64 = 30.0;
+const PITCH: f64 = 25.0;
+
+/// A surface that [faces](iso_grid::Facing::towards) the camera less than this is seen from its edge, ten degrees off on an average,
+const EDGE: f64 = 0.03;
+
+/// and then from one of these sides.
+const OTHER_YAWS: [f64; 3] = [-30.0, 75.0, -75.0];
+
 impl View {
     /// From the front, a little to the right and above.
-    pub const DEFAULT: Self = Self::Orbit { yaw: 30.0, pitch: 25.0, distance: None, target: None };
+    pub const DEFAULT: Self = Self::Orbit { yaw: YAW, pitch: PITCH, distance: None, target: None };
+
+    /// The default view of a surface: [`View::DEFAULT`], or from another side if that one shows its edge.
+    pub fn of(fitted: &Fitted) -> Self {
+        let faces = |yaw| fitted.facing.map_or(1.0, |facing| facing.towards(outward(yaw, PITCH).0));
+        let better = |best, yaw| if faces(yaw) > faces(best) { yaw } else { best };
+        let others = OTHER_YAWS.into_iter().filter(|_| faces(YAW) < EDGE);
+        Self::Orbit { yaw: others.fold(YAW, better), pitch: PITCH, distance: None, target: None }
+    }
 }
 
 impl Projection {
@@ -246,18 +264,24 @@ impl Frame<'_> {
     }
 }
 
+/// The unit vector from a target to an eye that orbits it, and one that is up in the picture.
+fn outward(yaw: f64, pitch: f64) -> (DVec3, DVec3) {
+    // Correctly rounded functions, so that the camera is the same on every machine.
+    let (sin_yaw, cos_yaw) = core_math::sincos(yaw.to_radians());
+    let (sin_pitch, cos_pitch) = core_math::sincos(pitch.to_radians());
+    let outward = DVec3::new(cos_pitch * sin_yaw, -cos_pitch * cos_yaw, sin_pitch);
+    // Perpendicular to `outward` at every pitch, so that looking straight down has an up direction too.
+    let up = DVec3::new(-sin_pitch * sin_yaw, sin_pitch * cos_yaw, cos_pitch);
+    (outward, up)
+}
+
 /// The eye, the unit vector forward, and a direction that is up in the picture and not along `forward`.
 fn place(view: View, frame: &Frame<'_>) -> Result<(DVec3, DVec3, DVec3), CameraError> {
     match view {
         View::Orbit { yaw, pitch, distance, target } => {
             checked("the yaw", "finite", yaw, yaw.is_finite())?;
             checked("the pitch", "between -90 and 90 degrees", pitch, pitch.abs() <= 90.0)?;
-            // Correctly rounded functions, so that the camera is the same on every machine.
-            let (sin_yaw, cos_yaw) = core_math::sincos(yaw.to_radians());
-            let (sin_pitch, cos_pitch) = core_math::sincos(pitch.to_radians());
-            let outward = DVec3::new(cos_pitch * sin_yaw, -cos_pitch * cos_yaw, sin_pitch);
-            // Perpendicular to `outward` at every pitch, so that looking straight down has an up direction too.
-            let up = DVec3::new(-sin_pitch * sin_yaw, sin_pitch * cos_yaw, cos_pitch);
+            let (outward, up) = outward(yaw, pitch);
             let center = frame.fitted.center();
             let target = target.unwrap_or(center);
             checked("the target", "finite", target.length(), target.is_finite())?;
@@ -286,6 +310,11 @@ fn checked(what: &'static str, range: &'static str, given: f64, holds: bool) -> 
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
+    use iso_expr::{Ast, Interpreter};
+    use iso_grid::{Surface, Workspace};
+
     use super::*;
 
     const CLOSE: f64 = 1e-12;
@@ -444,5 +473,27 @@ mod tests {
         }
         assert!(new(View::DEFAULT, Projection::Orthographic { view_width: Some(0.0) }).is_err());
         assert!(new(orbit(0.0, 91.0), Projection::DEFAULT).is_err());
+    }
+
+    #[test]
+    fn surfaces_are_not_seen_from_their_edge() {
+        let yaw = |formula: &str| {
+            let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
+            let surface = Surface::new(Arc::new(Interpreter), program);
+            let fitted = Fitted::around(&surface, &mut Workspace::default()).unwrap();
+            let View::Orbit { yaw, pitch, .. } = View::of(&fitted) else { panic!("a default view orbits") };
+            let faces = fitted.facing.unwrap().towards(outward(yaw, pitch).0);
+            assert!(faces > EDGE, "{formula}: {faces}");
+            yaw
+        };
+        for formula in ["x + 2y + 3z = 6", "x + y + z = 1", "z = x", "2x + 3y + 4z = 12"] {
+            assert!(OTHER_YAWS.contains(&yaw(formula)), "{formula}");
+        }
+        for formula in
+            ["x^2 + y^2 + z^2 = 1", "z = 0.2", "x = 0.1", "x - y = 1", "z = x y", "x^2 + y^2 = z^2"]
+        {
+            assert_eq!(yaw(formula), YAW, "{formula}");
+        }
+        assert_eq!(View::of(&region().into()), View::DEFAULT);
     }
 }

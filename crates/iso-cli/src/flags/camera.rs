@@ -9,7 +9,7 @@ use crate::values;
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Camera", allow_negative_numbers = true)]
 pub(crate) struct CameraFlags {
-    /// Degrees around the z axis, counter-clockwise from above; 0 looks along +y [default: 30]
+    /// Degrees around the z axis, counter-clockwise from above; 0 looks along +y [default: 30, or another where that shows a surface from its edge]
     #[arg(long, value_name = "DEGREES", value_parser = values::finite, conflicts_with = "eye")]
     pub(crate) yaw: Option<f64>,
 

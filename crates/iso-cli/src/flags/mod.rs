@@ -100,13 +100,20 @@ Examples:
   iso completions zsh > ~/.zfunc/_iso
   iso completions fish > ~/.config/fish/completions/iso.fish";
 
-/// The error with what to do about it where a formula stands in place of a command.
+/// The error with what to do about it where a formula stands in place of a command, or is parted by a shell.
 pub(crate) fn with_tip(mut error: clap::Error) -> clap::Error {
-    let has_tip = error.get(ContextKind::SuggestedSubcommand).is_some();
-    if error.kind() == ErrorKind::InvalidSubcommand && !has_tip {
-        let tip = "to draw a formula, write 'iso render FORMULA'".into();
-        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
-    }
+    let is_flag = |value: &ContextValue| value.to_string().starts_with("--");
+    let is_part = error.get(ContextKind::InvalidArg).is_some_and(|value| !is_flag(value));
+    let tip = match error.kind() {
+        ErrorKind::InvalidSubcommand if error.get(ContextKind::SuggestedSubcommand).is_none() => {
+            "to draw a formula, write 'iso render FORMULA'"
+        }
+        ErrorKind::UnknownArgument if is_part => {
+            "a formula stands in quotes, so that the shell takes it for one word: iso render 'x^2 + y^2 = 1'"
+        }
+        _ => return error,
+    };
+    error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
     error
 }
 

@@ -2,11 +2,14 @@
 
 /// A call as it is known elsewhere, and what to write. `sqr` and the shapes whose names begin with `f_` are POV-Ray's (`functions.inc`),
 /// `length` is GLSL's.
-const CALLS: [(&str, &str); 25] = [
+const CALLS: [(&str, &str); 29] = [
     ("sqr(u)", "u^2"),
     ("cube(u)", "u^3"),
     ("square(u)", "u^2"),
+    ("tg(u)", "tan(u)"),
     ("cot(u)", "1/tan(u)"),
+    ("ctg(u)", "1/tan(u)"),
+    ("arctg(u)", "atan(u)"),
     ("sec(u)", "1/cos(u)"),
     ("csc(u)", "1/sin(u)"),
     ("coth(u)", "1/tanh(u)"),
@@ -23,6 +26,7 @@ const CALLS: [(&str, &str); 25] = [
     ("sum(u, v)", "u + v"),
     ("where(x > 0, u, v)", "if(x > 0, u, v)"),
     ("iif(x > 0, u, v)", "if(x > 0, u, v)"),
+    ("lerp(u, v, w)", "mix(u, v, w)"),
     ("union(u, v)", "min(u, v)"),
     ("intersection(u, v)", "max(u, v)"),
     ("difference(u, v)", "max(u, -v)"),
@@ -31,8 +35,20 @@ const CALLS: [(&str, &str); 25] = [
 ];
 
 /// Functions that other programs have and no formula here gives.
-const SPECIAL: [&str; 10] =
-    ["erf", "erfc", "gamma", "tgamma", "lgamma", "beta", "zeta", "j0", "factorial", "noise"];
+const SPECIAL: [&str; 12] = [
+    "erf",
+    "erfc",
+    "gamma",
+    "tgamma",
+    "lgamma",
+    "beta",
+    "zeta",
+    "j0",
+    "besselj",
+    "bessel",
+    "factorial",
+    "noise",
+];
 
 /// What to do without infinity.
 pub(super) const FINITE: &str = "numbers are finite: write one that is large enough, such as `1e9`";

@@ -27,7 +27,10 @@ pub(super) fn unknown_name(
         return bare_logarithm(item.span());
     }
     let help = match (suggestion(item.text, is_called, scope, parameters), is_left_side) {
-        (Some(help), true) if !is_called => format!("{help} To define it, write `{name} := …`"),
+        (Some(help), true) if !is_called => {
+            let end = if help.ends_with('?') { "" } else { "." };
+            format!("{help}{end} To define it, write `{name} := …`")
+        }
         (Some(help), _) => help,
         (None, true) if is_called => {
             format!("leave out `{name}(…) =` before a formula, or define it: `{name}(u) := …`")
@@ -128,6 +131,14 @@ pub(super) fn stray(item: &Item<'_>) -> FormulaError {
         '∗' => Some("write `*`"),
         '–' | '—' => Some("write `-`"),
         '∞' => Some(FINITE),
+        '⌊' | '⌋' => Some("write `floor(a)`"),
+        '⌈' | '⌉' => Some("write `ceil(a)`"),
+        '±' | '∓' => Some("both signs at once are both factors of a product: `(x - 1)(x + 1) = 0`"),
+        '≈' | '≡' | '≔' => {
+            Some("write `=` between the two sides of an equation, `:=` for a definition")
+        }
+        '$' => Some("LaTeX is not read: leave out `$`"),
+        '\u{200b}'..='\u{200f}' => Some("this is a character without width: leave it out"),
         '°' => Some("angles are in radians: write `*pi/180`"),
         '½' | '⅓' | '⅔' | '¼' | '¾' => Some("write fractions as `1/2`"),
         '₀'..='₉' => Some("write indices as digits: `x1`"),

@@ -4,9 +4,10 @@
 //! alone, which nobody sees. So the surface is looked for at points, and a region that holds all of it stays as large as intervals say.
 
 use glam::{DVec3, IVec3};
-use iso_expr::BoxKernel;
+use iso_expr::{BoxKernel, Interval};
 use rustc_hash::{FxBuildHasher, FxHashMap};
 
+use super::Facing;
 use super::cells::{HALVINGS, OCTANTS, enclose, halved};
 use crate::{Region, Workspace};
 
@@ -54,20 +55,35 @@ impl Sphere {
     }
 }
 
+/// Where a surface is found.
+#[derive(Default)]
+struct Crossings {
+    points: Vec<DVec3>,
+    /// Vectors along its normals; NaN where not all values around are known.
+    normals: Vec<DVec3>,
+}
+
+/// A vector along the gradient of what has these values at the corners of a cube.
+fn gradient(values: [f64; 8]) -> DVec3 {
+    // A part of each, so that no sum overflows.
+    let sides = OCTANTS.map(|octant| 2.0 * octant.as_dvec3() - 1.0);
+    sides.into_iter().zip(values).map(|(side, value)| 0.125 * value * side).sum()
+}
+
 impl Region {
     /// A sphere around the points at which F is found to change its sign at the corners of `cells`, sixteen along each axis, that may hold the
-    /// surface; `None` when there are none.
-    pub(super) fn sphere_around_surface(
+    /// surface, and which way it faces there; `None` when there are none.
+    pub(super) fn crossings(
         &self,
         mut cells: Vec<IVec3>,
         (kernel, is_stopped): (&dyn BoxKernel, &dyn Fn() -> bool),
         workspace: &mut Workspace,
-    ) -> Option<Sphere> {
-        let mut points = Vec::new();
+    ) -> (Option<Sphere>, Option<Facing>) {
+        let mut found = Crossings::default();
         for depth in HALVINGS..=HALVINGS + HALVINGS_OUTSIDE {
             let count = 1 << depth;
-            self.push_crossings(&mut points, (&cells, count), kernel, workspace);
-            let sphere = Sphere::around(&points)?;
+            self.push_crossings(&mut found, (&cells, count), kernel, workspace);
+            let Some(sphere) = Sphere::around(&found.points) else { break };
             cells.retain(|cell| self.is_outside(*cell, count, &sphere));
             let is_last = depth == HALVINGS + HALVINGS_OUTSIDE;
             if is_last || cells.is_empty() || cells.len() > MOST_OUTSIDE || is_stopped() {
@@ -75,7 +91,7 @@ impl Region {
             }
             cells = self.not_empty(halved(&cells), 2 * count, kernel, workspace);
         }
-        Sphere::around(&points)
+        (Sphere::around(&found.points), Facing::of(&found.normals))
     }
 
     /// Whether all of a cell lies outside of a sphere.
@@ -84,10 +100,11 @@ impl Region {
         sphere.center.clamp(lo, hi).distance(sphere.center) > sphere.radius
     }
 
-    /// Adds about where F is zero on edges of cells, of which `count` fill the region along each axis, along which it changes its sign.
+    /// Adds about where F is zero on edges of cells, of which `count` fill the region along each axis, along which it changes its sign, and about
+    /// the gradients of F in those cells.
     fn push_crossings(
         &self,
-        points: &mut Vec<DVec3>,
+        found: &mut Crossings,
         (cells, count): (&[IVec3], i32),
         kernel: &dyn BoxKernel,
         workspace: &mut Workspace,
@@ -102,23 +119,39 @@ impl Region {
         };
         let cells: Vec<_> =
             cells.iter().map(|cell| OCTANTS.map(|octant| number_of(*cell + octant))).collect();
-        let found = enclose(kernel, workspace, corners.iter().map(|corner| (*corner, *corner)));
-        let value = |corner: usize| {
-            let enclosure = found.interval(0, corner);
-            let is_known = enclosure.lo > 0.0 || enclosure.hi < 0.0;
-            if is_known { 0.5 * enclosure.lo + 0.5 * enclosure.hi } else { f64::NAN }
-        };
-        let values: Vec<f64> = (0..found.len()).map(value).collect();
-        for edge in cells.iter().flat_map(|cell| EDGES.map(|edge| edge.map(|corner| cell[corner]))) {
-            let [a, b] = edge.map(|corner| values[corner]);
-            if (a < 0.0 && b > 0.0) || (a > 0.0 && b < 0.0) {
-                let [from, to] = edge.map(|corner| corners[corner]);
-                // Halved, for a difference of halves does not overflow.
-                let way = (0.5 * a) / (0.5 * a - 0.5 * b);
-                points.push(from.lerp(to, if way.is_nan() { 0.5 } else { way }));
+        let enclosures = enclose(kernel, workspace, corners.iter().map(|corner| (*corner, *corner)));
+        let values: Vec<Interval> =
+            (0..enclosures.len()).map(|corner| enclosures.interval(0, corner)).collect();
+        for cell in cells {
+            let (at, values) = (cell.map(|corner| corners[corner]), cell.map(|corner| values[corner]));
+            let before = found.points.len();
+            found.points.extend(EDGES.into_iter().filter_map(|edge| crossing(edge, &at, &values)));
+            if found.points.len() == before {
+                // It may go through corners from edge to edge.
+                let is_below = |corner: &usize| values[*corner].hi < 0.0;
+                let is_above = |corner: &usize| values[*corner].lo > 0.0;
+                let ends = (0..8).find(is_below).zip((0..8).find(is_above));
+                found.points.extend(ends.and_then(|(a, b)| crossing([a, b], &at, &values)));
+            }
+            if found.points.len() > before {
+                found.normals.push(gradient(values.map(middle)) / self.extent());
             }
         }
     }
+}
+
+/// About where F is zero between two corners of a cell, if it changes its sign from one to the other.
+fn crossing([a, b]: [usize; 2], corners: &[DVec3; 8], values: &[Interval; 8]) -> Option<DVec3> {
+    let changes = values[a].hi < 0.0 && values[b].lo > 0.0 || values[a].lo > 0.0 && values[b].hi < 0.0;
+    let (from, to) = (middle(values[a]), middle(values[b]));
+    // Halved, for a difference of halves does not overflow.
+    let way = (0.5 * from) / (0.5 * from - 0.5 * to);
+    changes.then(|| corners[a].lerp(corners[b], if way.is_nan() { 0.5 } else { way }))
+}
+
+/// Halves are added, whose sum does not overflow.
+fn middle(interval: Interval) -> f64 {
+    0.5 * interval.lo + 0.5 * interval.hi
 }
 
 #[cfg(test)]
