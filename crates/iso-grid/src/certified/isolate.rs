@@ -125,8 +125,8 @@ fn halve(coefficients: &mut Vec<Interval>, first: usize) {
     }
 }
 
-/// Encloses the means of numbers of both intervals. They are halved before they are added, for a sum that overflows would be
-/// no bound of anything once halved.
+/// Encloses the means of numbers of both intervals, up to half of the least double, which cannot hide a sign: what is left of zero in a mean is one
+/// double at least. They are halved before they are added, for a sum that overflows would be no bound of anything once halved.
 fn mean(a: Interval, b: Interval) -> Interval {
     Interval { lo: round_down(0.5 * a.lo + 0.5 * b.lo), hi: round_up(0.5 * a.hi + 0.5 * b.hi) }
 }

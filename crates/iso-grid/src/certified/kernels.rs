@@ -55,9 +55,10 @@ impl Kernels {
         Ok(Self { formula: Arc::new(formula), domain: [Interval::ENTIRE; 3] })
     }
 
-    /// Shorter ones that hold on `domain`, a part of where these do; `None` where there are none. They are made for few
-    /// runs, and compiled when they are asked for often.
+    /// Shorter ones that hold on `domain`, as far as these do; `None` where there are none. They are made for few runs, and compiled when they are
+    /// asked for often.
     pub(super) fn shortened(&self, formulas: &Formulas, domain: Bounds) -> Option<Self> {
+        let domain = [0, 1, 2].map(|axis| domain[axis].intersection(self.domain[axis]));
         let program = self.program().shortened(domain)?;
         Some(Self { formula: formulas.one_of(program, &self.formula), domain })
     }

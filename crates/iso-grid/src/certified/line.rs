@@ -25,7 +25,7 @@ pub(super) struct Line<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Course {
     pub(super) value: Decorated,
-    /// Its decoration says whether the derivative exists.
+    /// The derivative, and at kinks all generalised ones; it says nothing unless it is defined.
     pub(super) slope: Decorated,
 }
 

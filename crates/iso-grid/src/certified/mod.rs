@@ -45,7 +45,7 @@ use walk::Walk;
 /// - [`Outcome::Hit`]: F is continuous and strictly monotone on the bracket, it has a root there, a simple one, inside
 ///   the region, and no point of the region before it is a root;
 /// - [`Outcome::Touch`]: no point of the region before the bracket is a root, and in the bracket, which cannot be split
-///   further, F is continuous and comes within rounding of zero, or is zero on all of it;
+///   further or on all of which rounding hides F, F is continuous and comes within rounding of zero, or is zero on all of it;
 /// - [`Outcome::Miss`]: no point of the region is a root;
 /// - [`Outcome::Undecided`]: no point of the region before the stretch is a root. In the stretch the proof stopped: at a
 ///   possible root next to a jump, a pole or an edge of the domain, on a face of the region, or since too much

@@ -181,4 +181,14 @@ mod tests {
         };
         assert!(faces.iter().all(|face| !face.are(&places.whole)));
     }
+
+    /// Far from the origin margins of small places are larger than the places, so that they may reach out of those around them.
+    #[test]
+    fn what_is_shorter_holds_no_farther_than_what_it_was_made_of() {
+        let around =
+            |x: f64, size: f64| [x, 0.0, 0.0].map(|middle| Interval { lo: middle - size, hi: middle + size });
+        let (inner, outer) = (around(1.0, 0.1), around(1.0, 0.2));
+        let shorter = kernels().within(inner).shortened(&Formulas::default(), outer).unwrap();
+        assert!(shorter.cover(&inner) && !shorter.cover(&outer));
+    }
 }
