@@ -95,12 +95,13 @@ fn a_formula_without_a_command_is_told_which() {
 }
 
 #[test]
-fn a_formula_that_the_shell_has_parted_is_told_to_stand_in_quotes() {
+fn tips_tell_how_formulas_and_boxes_are_written() {
     let case = Case::new();
     for parts in ["render x^2 + y^2 = 1", "explain x -y^2", "eval x y"] {
         let parts: Vec<_> = parts.split(' ').collect();
         case.run(&parts).exits(2).mentions("tip: a formula stands in quotes");
     }
+    case.run(&["render", "x", "--box=-1,1,-1,1,-1,1"]).exits(2).mentions("the order is xmin,ymin,zmin");
     case.run(&["render", "x", "--sizes", "5"]).exits(2).mentions("'--size'");
 }
 

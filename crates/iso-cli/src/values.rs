@@ -50,9 +50,12 @@ pub(crate) fn times(text: &str) -> Result<NonZeroU32, String> {
 
 /// `a,b` for the cube with these ends along every axis, or `xmin,ymin,zmin,xmax,ymax,zmax`.
 pub(crate) fn region(text: &str) -> Result<Region, String> {
-    let (min, max) = match numbers(text)?[..] {
-        [from, to] => (DVec3::splat(from), DVec3::splat(to)),
-        [x, y, z, to_x, to_y, to_z] => (DVec3::new(x, y, z), DVec3::new(to_x, to_y, to_z)),
+    let (min, max, order) = match numbers(text)?[..] {
+        [from, to] => (DVec3::splat(from), DVec3::splat(to), ""),
+        [x, y, z, to_x, to_y, to_z] => {
+            let order = "; the order is xmin,ymin,zmin,xmax,ymax,zmax";
+            (DVec3::new(x, y, z), DVec3::new(to_x, to_y, to_z), order)
+        }
         ref others => {
             return Err(format!(
                 "expected 2 numbers (from,to along every axis) or 6 (xmin,ymin,zmin,xmax,ymax,zmax), found {}",
@@ -60,7 +63,7 @@ pub(crate) fn region(text: &str) -> Result<Region, String> {
             ));
         }
     };
-    Region::new(min, max).map_err(|error| error.to_string())
+    Region::new(min, max).map_err(|error| format!("{error}{order}"))
 }
 
 /// `x,y,z`.

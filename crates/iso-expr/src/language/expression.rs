@@ -233,8 +233,8 @@ impl<'t> Reader<'_, 't> {
         }
     }
 
-    /// Whether a line that ends here goes on in the next one, since that begins with what has its left side here. A sign after
-    /// a definition begins the formula.
+    /// Whether a line that ends here goes on in the next one, since that begins with an operator or with `where`, whose left side is here.
+    /// A sign after a definition begins the formula.
     fn goes_on(&self) -> bool {
         match self.cursor.next_on_lines().kind {
             Kind::plus | Kind::minus | Kind::equal | Kind::cut => self.place == Place::Formula,

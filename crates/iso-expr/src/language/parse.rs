@@ -128,6 +128,7 @@ impl<'t> Statements<'t> {
         Ok(())
     }
 
+    /// Reads `where` and its condition, if they follow.
     fn read_domain(&mut self) -> Result<Option<Domain>, FormulaError> {
         let cut = self.cursor.peek();
         if cut.kind != Kind::cut {

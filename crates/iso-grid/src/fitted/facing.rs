@@ -48,7 +48,7 @@ mod tests {
         let normal = DVec3::new(1.0, 2.0, 3.0).normalize();
         assert!((plane.towards(-normal) - 1.0).abs() < 1e-9);
         assert!(plane.towards(normal.any_orthonormal_vector()).abs() < 1e-9);
-        // Half of what is flat and of unlike sides does not matter: cells are longer along one axis.
+        // Cells are longer along one axis than along others.
         let slab = around("max(abs(x) - 3, abs(y) - 0.2, abs(z) - 2) = 0").facing.unwrap();
         assert!(slab.towards(DVec3::Y) > slab.towards(DVec3::X) + slab.towards(DVec3::Z));
         let cylinder = around("x^2 + y^2 = 1").facing.unwrap();

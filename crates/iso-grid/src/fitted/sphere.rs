@@ -59,7 +59,7 @@ impl Sphere {
 #[derive(Default)]
 struct Crossings {
     points: Vec<DVec3>,
-    /// Vectors along its normals; NaN where not all values around are known.
+    /// Vectors along its normals; not numbers where not all values around are.
     normals: Vec<DVec3>,
 }
 

@@ -115,7 +115,7 @@ impl Bundle {
     /// Begins with its open rays, where they are likely to have a root; says whether there are any.
     #[inline(always)]
     fn begin<S: Simd>(&mut self, simd: S, tile: &Tile<'_>, start: &Start<'_>) -> bool {
-        let [columns, rows] = [doubles(&self.columns), doubles(&self.rows)];
+        let (columns, rows) = (doubles(&self.columns), doubles(&self.rows));
         let (mut t, width) = (Row::default(), tile.width() as u32);
         for lane in 0..ROW {
             self.places[lane] = self.rows[lane] * width + self.columns[lane];
