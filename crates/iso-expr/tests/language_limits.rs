@@ -100,6 +100,17 @@ fn a_million_terms_are_too_long() {
 }
 
 #[test]
+fn a_line_may_go_on_after_a_megabyte_of_others() {
+    let lines = megabyte_of("\n");
+    for text in [format!("x{lines}+ y = 1"), format!("x = 1{lines}where y < 2"), format!("(x{lines}) = 1")] {
+        assert_eq!(run(text), Ok(()));
+    }
+    let joined = FormulaErrorKind::TooManyOperations { given: 100_001, allowed: 100_000 };
+    assert_eq!(kind(format!("x where y < 1{}", many(" or z<x"))), joined);
+    assert_eq!(kind(format!("x where {}y", many("not "))), FormulaErrorKind::NoDomain);
+}
+
+#[test]
 fn definitions_do_not_explode() {
     let chain = |levels: usize, body: &dyn Fn(usize) -> String| -> String {
         (1..=levels).map(|level| format!("f{level}(u, v) := {};", body(level - 1))).collect()

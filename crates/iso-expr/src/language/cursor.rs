@@ -80,6 +80,13 @@ impl<'t> Cursor<'t> {
         self.next = (self.next + 1).min(self.items.len() - 1);
     }
 
+    /// Steps to the first item from here on that is not the end of a line.
+    pub(super) fn skip_lines(&mut self) {
+        while self.peek().kind == Kind::newline {
+            self.advance();
+        }
+    }
+
     /// Notes that `item` opens a level of nesting.
     pub(super) fn note_depth(&mut self, depth: usize, item: &Item<'_>) {
         if depth == limits::DEEPEST_NESTING + 1 && self.deepest.0 < depth {

@@ -9,7 +9,7 @@ use crate::Operation;
 pub(super) struct Domain {
     /// As it was written.
     pub(super) condition: Tree,
-    /// An expression that is negative where the condition does not hold, and not where it does.
+    /// An expression that is positive where the condition holds, negative where it does not, and zero between.
     pub(super) margin: Tree,
 }
 

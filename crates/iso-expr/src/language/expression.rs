@@ -207,7 +207,7 @@ impl<'t> Reader<'_, 't> {
             let item = self.cursor.peek();
             let inside = !self.brackets.is_empty();
             match item.kind {
-                Kind::newline if inside || self.goes_on() => self.cursor.advance(),
+                Kind::newline if inside || self.goes_on() => self.cursor.skip_lines(),
                 Kind::newline | Kind::semicolon | Kind::EOI if !inside => return Ok(false),
                 Kind::equal | Kind::double_equal | Kind::cut if !inside && self.place == Place::Formula => {
                     return Ok(false);

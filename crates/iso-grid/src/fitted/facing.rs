@@ -30,17 +30,9 @@ impl Facing {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
-    use iso_expr::{Ast, Interpreter};
-
     use super::*;
-    use crate::{Fitted, Surface, Workspace};
-
-    fn around(formula: &str) -> Fitted {
-        let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
-        Fitted::around(&Surface::new(Arc::new(Interpreter), program), &mut Workspace::default()).unwrap()
-    }
+    use crate::Fitted;
+    use crate::fitted::tests::around;
 
     #[test]
     fn surfaces_face_where_their_normals_point() {

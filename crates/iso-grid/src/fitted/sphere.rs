@@ -156,17 +156,8 @@ fn middle(interval: Interval) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
-    use iso_expr::{Ast, Interpreter};
-
     use super::*;
-    use crate::{Fitted, Surface};
-
-    fn around(formula: &str) -> Fitted {
-        let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
-        Fitted::around(&Surface::new(Arc::new(Interpreter), program), &mut Workspace::default()).unwrap()
-    }
+    use crate::fitted::tests::around;
 
     /// The sphere holds these points, of which two are opposite ends of a diameter, and is hardly larger.
     #[track_caller]

@@ -11,7 +11,8 @@ fn surface(formula: &str) -> Surface {
     Surface::new(Arc::new(Interpreter), program)
 }
 
-fn around(formula: &str) -> Fitted {
+/// What is found around the surface of a formula.
+pub(super) fn around(formula: &str) -> Fitted {
     Fitted::around(&surface(formula), &mut Workspace::default()).unwrap()
 }
 
