@@ -438,3 +438,17 @@ fn root_finders_draw_the_same_pixels_with_less_work() {
     assert_eq!(coarse, bisected);
     assert!(least < most);
 }
+
+#[test]
+fn a_surface_is_not_seen_from_its_edge_unless_that_is_asked_for() {
+    let case = Case::new();
+    let forward = |more: &[&str]| {
+        let arguments = [&["render", "x + y + z = 1", "--size", "16", "--json"], more].concat();
+        case.run(&arguments).exits(0).json()["camera"]["forward"].to_string()
+    };
+    let standard = forward(&["--yaw", "30", "--pitch", "25"]);
+    assert_ne!(forward(&[]), standard);
+    for more in [&["--yaw", "30"], &["--pitch", "25"], &["--box", "-2,2"]] {
+        assert_eq!(forward(more), standard, "{more:?}");
+    }
+}
