@@ -58,8 +58,14 @@ impl Kernel {
         }
     }
 
-    /// Whether the method that proves what it says compiles no kernel of a formula ahead, for less of it is left nearly everywhere.
+    /// Whether the method that proves what it says compiles no kernel of a formula ahead, for less of it is left nearly everywhere: in places, or
+    /// since it is [cut](Program::is_cut) and hardly asked for at its edge.
     pub fn are_left_to_places(value: &Program) -> bool {
+        value.is_cut() || Self::are_for_places(value)
+    }
+
+    /// Whether most of a formula is left out nearly everywhere, place by place.
+    pub(crate) fn are_for_places(value: &Program) -> bool {
         value.operations() > AS_A_WHOLE && value.has_branches()
     }
 

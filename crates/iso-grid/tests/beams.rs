@@ -8,7 +8,7 @@ use iso_expr::{Ast, Interpreter, Program};
 use iso_grid::{Certified, Hit, Outcome, Raster, Ray, Region, Span, Surface, Tile, Tracer, Workspace};
 
 /// Formulas, half sides of their regions, and what they are tried for.
-const SCENES: [(&str, f64, &str); 52] = [
+const SCENES: [(&str, f64, &str); 60] = [
     ("(x^2+y^2-1)^2 + 4z^2 + 0.5x - 0.2", 1.5, "a classic"),
     ("x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8", 2.6, "parts in front of each other"),
     ("sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)", 5.0, "cut by the region's faces"),
@@ -68,6 +68,22 @@ const SCENES: [(&str, f64, &str); 52] = [
     ("abs(x)+abs(y)+abs(z)-0.9", 1.2, "an octahedron as a sum"),
     ("abs(abs(x)-0.5)+y^2+max(z,2z)^2-0.2", 1.3, "kinks within kinks"),
     ("max(x^2+y^2+z^2-1, 0.05-abs(y+abs(z)/3))", 1.3, "a bent cut"),
+    ("x^2+y^2-z^2 where x^2+y^2+z^2 < 1", 1.3, "a cone cut by a ball"),
+    ("x^2+y^2+z^2-1 where z < 0.5 and x+y < 0.6", 1.3, "a bowl with a notch"),
+    ("z - x y where x^2+y^2 < 0.8 or x > 0.7", 1.3, "a saddle, in either of two parts"),
+    ("z - x^2 where z > x^2 + 1e-9", 1.2, "a surface right behind its edge"),
+    ("y where y > -1e-9 x", 1.2, "a surface that leaves its edge slowly"),
+    (
+        "min(x^2+y^2+z^2-0.4, max(abs(x)-0.9, y^2+z^2-0.1)) where 0.3 sin(7x) < y + z/3",
+        1.2,
+        "a body cut along a wave",
+    ),
+    ("max(x^2+y^2+z^2-1 + 0sqrt(0.2-z), 0.1-x^2-y^2)", 1.2, "a bore in what is cut"),
+    (
+        "(x^2+2.25y^2+z^2-1)^3 - x^2 z^3 - 0.1125y^2 z^3 where x < y + 0.3",
+        1.4,
+        "a heart, cut and followed by roots of cubes",
+    ),
     (SHARP, 1.3, "a sharp blend, whose exponentials underflow not far from the surface"),
 ];
 

@@ -309,6 +309,10 @@ impl Wanted<'_> {
         match self.kernel_of_whole(kernel) {
             (true, _) if self.is_left_to_places() => match kernel {
                 Kernel::ValueEnclosures if !self.box_is_given => (true, "a box is fitted around the surface"),
+                _ if self.program.is_cut() => (
+                    true,
+                    "asked for where F is cut; those of the whole function within are compiled when first asked for",
+                ),
                 _ => (
                     true,
                     "asked for where boxes leave less of F; compiled for each place when asked for often",

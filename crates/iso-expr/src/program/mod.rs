@@ -195,7 +195,7 @@ impl Program {
     /// easier to follow to its zeros: sums of two cubes become sums of what is cubed, and polynomials compositions of lower ones. Where the two
     /// are zero their gradients have the same direction, if both have any.
     pub fn with_same_signs(&self) -> Self {
-        self.without_cubes().composed()
+        self.with_what_is_cut(|program| program.without_cubes().composed())
     }
 
     /// A constant.

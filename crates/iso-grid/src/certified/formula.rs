@@ -32,6 +32,7 @@ pub(super) struct Formula {
     /// Before each kernel is compiled that is not compiled ahead.
     patience_for: [Patience; Kernel::ALL.len()],
     has_branches: bool,
+    is_cut: bool,
     /// Whether it is certainly a number everywhere, found when first asked for.
     is_defined_everywhere: OnceLock<bool>,
     /// What is left of it in places must have so many operations to have forms. These take long to make, and pay where rays of many places
@@ -63,6 +64,11 @@ impl Default for Formulas {
 impl Formulas {
     /// The one with this program, which is what is left of `outer`. It is kept while there is room.
     pub(super) fn one_of(&self, program: Program, outer: &Formula) -> Arc<Formula> {
+        let patience = Patience::limited(&program);
+        self.one_with(program, outer, patience)
+    }
+
+    fn one_with(&self, program: Program, outer: &Formula, patience: Patience) -> Arc<Formula> {
         let hash = FxBuildHasher.hash_one(&program);
         // Formulas are only ever put in whole.
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
@@ -71,7 +77,6 @@ impl Formulas {
             return Arc::clone(formula);
         }
         let operations = program.operations() as u64;
-        let patience = Patience::limited(&program);
         let surface = outer.surface.reduced_to(program);
         let formula = Arc::new(Formula::new(surface, patience, outer.least_with_forms));
         if self.have_room() {
@@ -94,6 +99,11 @@ impl Patience {
     /// As long as something is not asked for often.
     fn limited(program: &Program) -> Self {
         Self(AtomicU64::new(OFTEN * program.operations().max(1) as u64))
+    }
+
+    /// Until something is first asked for.
+    fn none() -> Self {
+        Self(AtomicU64::new(1))
     }
 
     /// It is never to be compiled.
@@ -132,7 +142,7 @@ impl Formula {
         let is_left_to_places = Kernel::are_left_to_places(program);
         let least_with_forms = match program.operations() {
             operations if operations > Kernel::WITH_FORMS => usize::MAX,
-            operations if is_left_to_places => operations / 2,
+            operations if Kernel::are_for_places(program) => operations / 2,
             _ => 0,
         };
         if is_left_to_places {
@@ -144,7 +154,7 @@ impl Formula {
 
     fn new(surface: Surface, patience: Patience, least_with_forms: usize) -> Self {
         let program = surface.program();
-        let has_branches = program.has_branches();
+        let (has_branches, is_cut) = (program.has_branches(), program.is_cut());
         Self {
             least_with_forms,
             has_forms: program.operations() >= least_with_forms && Kernel::Forms.pays(program),
@@ -153,6 +163,7 @@ impl Formula {
             compiled: OnceLock::new(),
             patience,
             has_branches,
+            is_cut,
             is_defined_everywhere: OnceLock::new(),
             operations: Default::default(),
             composition: OnceLock::new(),
@@ -166,6 +177,11 @@ impl Formula {
     /// Whether there is anything that a box may decide.
     pub(super) fn has_branches(&self) -> bool {
         self.has_branches
+    }
+
+    /// Whether it is a function [within](Composition::Within) a margin.
+    pub(super) fn is_cut(&self) -> bool {
+        self.is_cut
     }
 
     /// Whether it is certainly a number everywhere.
@@ -187,8 +203,15 @@ impl Formula {
     /// How it is made of others everywhere, if it has kinks.
     pub(super) fn composition(&self, formulas: &Formulas) -> Option<&Composition<Arc<Self>>> {
         let find = || {
-            let composition = self.program().composition(LONGEST_CHOICE)?;
-            Some(composition.map(|program| formulas.one_of(program, self)))
+            let one_of = |program| formulas.one_of(program, self);
+            Some(match self.program().composition(LONGEST_CHOICE)? {
+                Composition::Within { function, margin } if !Kernel::are_left_to_places(&function) => {
+                    // It is asked for wherever anything is to be seen.
+                    let function = formulas.one_with(function, self, Patience::none());
+                    Composition::Within { function, margin: one_of(margin) }
+                }
+                composition => composition.map(one_of),
+            })
         };
         self.composition.get_or_init(find).as_ref()
     }

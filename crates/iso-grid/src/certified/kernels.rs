@@ -94,6 +94,11 @@ impl Kernels {
         self.formula.has_branches()
     }
 
+    /// Whether F is a function [within](Composition::Within) a margin.
+    pub(super) fn are_cut(&self) -> bool {
+        self.formula.is_cut()
+    }
+
     /// Whether the function is certainly a number everywhere.
     pub(super) fn are_defined_everywhere(&self) -> bool {
         self.formula.is_defined_everywhere()
@@ -146,11 +151,6 @@ impl Kernels {
     /// Whether affine forms of F and its derivatives are asked for.
     pub(super) fn have_forms(&self) -> bool {
         self.formula.has_forms()
-    }
-
-    /// The corners of the box on which they hold.
-    pub(super) fn corners(&self) -> (DVec3, DVec3) {
-        (self.domain.map(|side| side.lo).into(), self.domain.map(|side| side.hi).into())
     }
 
     /// Whether they hold on all of a box.

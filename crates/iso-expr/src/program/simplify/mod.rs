@@ -21,20 +21,19 @@ impl Program {
         program.pruned()
     }
 
-    /// The same, with the value of one operation replaced by what `replace` makes of its first two operands.
+    /// The same, with the values of some operations replaced by what `replace` makes of their first two operands.
     pub(super) fn simplified_with(
         &self,
-        replaced: NodeId,
-        replace: impl Fn(&mut Simplifier<'_>, [NodeId; 2]) -> NodeId,
+        replace: impl Fn(&mut Simplifier<'_>, NodeId, [NodeId; 2]) -> Option<NodeId>,
     ) -> Self {
-        let (mut program, mut place) = (Self::new(), 0);
+        let (mut program, mut ids) = (Self::new(), self.iter().map(|(id, _)| id));
         program.outputs = program.import_with(self, |program, node| {
-            let is_replaced = place == replaced.index();
-            place += 1;
-            match node {
-                Node::Apply(_, [a, b, _]) if is_replaced => replace(&mut Simplifier { program }, [a, b]),
-                _ => Simplifier { program }.add(node),
-            }
+            let id = ids.next().expect("there is a number for each node");
+            let replaced = match node {
+                Node::Apply(_, [a, b, _]) => replace(&mut Simplifier { program }, id, [a, b]),
+                _ => None,
+            };
+            replaced.unwrap_or_else(|| Simplifier { program }.add(node))
         });
         program.pruned()
     }

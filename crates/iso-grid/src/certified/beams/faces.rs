@@ -151,7 +151,8 @@ impl Subdivision<'_> {
             return known.clone();
         }
         let asked = self.kernels(kernels);
-        let found = asked.may_be_shortened().then(|| self.certified.places.composition(asked)).flatten();
+        let is_made = asked.may_be_shortened() || asked.are_cut();
+        let found = is_made.then(|| self.certified.places.composition(asked)).flatten();
         let found = found.map(|faces| Rc::new(faces.map(|face| self.number_of(Arc::new(face)))));
         self.faces[kernels as usize] = Known::Everywhere(found.clone());
         found
@@ -171,6 +172,9 @@ impl Subdivision<'_> {
             Composition::Choice { by, below, above } => {
                 self.made_of_sides(part, *by, [*below, *above], outlines)
             }
+            Composition::Within { function, margin } => {
+                self.made_within(part, (*function, *margin), outlines)
+            }
         }
     }
 
@@ -185,12 +189,30 @@ impl Subdivision<'_> {
         let by = match self.made(part, by, outlines)? {
             Made::Signed(sign) => return self.made(part, if sign < 0.0 { below } else { above }, outlines),
             Made::Face(by) => by,
-            Made::Of(..) | Made::Choice(..) => return None,
+            Made::Of(..) | Made::Choice(..) | Made::Within(..) => return None,
         };
         let sides = [self.made(part, below, outlines)?, self.made(part, above, outlines)?];
         Some(match sides {
             [Made::Signed(below), Made::Signed(above)] if below == above => Made::Signed(below),
             sides => Made::Choice(by, Box::new(sides)),
+        })
+    }
+
+    /// What a function comes to on a part where a margin is not negative. Nothing is met where it is.
+    fn made_within(
+        &mut self,
+        part: &Part,
+        (function, margin): (u32, u32),
+        outlines: &mut Vec<Outline>,
+    ) -> Option<Made> {
+        let margin = match self.made(part, margin, outlines)? {
+            Made::Signed(sign) if sign < 0.0 => return Some(Made::Signed(1.0)),
+            Made::Signed(_) => return self.made(part, function, outlines),
+            margin => margin,
+        };
+        Some(match self.made(part, function, outlines)? {
+            Made::Signed(sign) => Made::Signed(sign),
+            function => Made::Within(Box::new([margin, function])),
         })
     }
 
@@ -232,8 +254,11 @@ impl Subdivision<'_> {
         if let Some(known) = outlines.iter().position(is_same) {
             return Some(Made::Face(known));
         }
-        if let Some(faces) = self.faces_of(kernels) {
-            return self.made_of_several(part, (kernels, &faces), outlines);
+        match self.faces_of(kernels) {
+            // What has no sign in some places tells nothing of what is made of it.
+            Some(faces) if matches!(*faces, Composition::Within { .. }) => return None,
+            Some(faces) => return self.made_of_several(part, (kernels, &faces), outlines),
+            None => {}
         }
         let (t, center) = self.center(part);
         let bounds = self.beam(part.beam).bounds_in_space(part.form.reach);

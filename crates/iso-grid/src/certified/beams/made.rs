@@ -21,10 +21,12 @@ pub(super) enum Made {
     Of(Extreme, Vec<Self>),
     /// It is the second where the face of this number is negative, and the third where that is positive; where that is zero, all three are the same.
     Choice(usize, Box<[Self; 2]>),
+    /// It is the second where the first is positive, and nothing where that is negative.
+    Within(Box<[Self; 2]>),
 }
 
 impl Made {
-    /// The sign where faces have these, 0 where that is not known.
+    /// The sign where faces have these, 0 where that is not known, NaN where there is nothing.
     fn sign(&self, of_faces: &[f64; MOST]) -> f64 {
         match self {
             Self::Signed(sign) => *sign,
@@ -43,6 +45,12 @@ impl Made {
                     (_, [_, above]) => above,
                 }
             }
+            Self::Within(both) => match both.each_ref().map(|made| made.sign(of_faces)) {
+                [..0.0, _] => f64::NAN,
+                // Where the function is zero, the margin may be so too.
+                [0.0, _] => 0.0,
+                [_, sign] => sign,
+            },
         }
     }
 
@@ -61,11 +69,12 @@ impl Made {
             Self::Face(number) => are_faces[*number] = true,
             Self::Of(_, parts) => parts.iter().for_each(|part| part.note_faces(are_faces)),
             Self::Choice(_, sides) => sides.iter().for_each(|side| side.note_faces(are_faces)),
+            Self::Within(both) => both[1].note_faces(are_faces),
         }
     }
 }
 
-/// The sign of F for all signs that its faces may have.
+/// The sign of F for all signs that its faces may have, NaN where it is nothing.
 pub(super) struct Combinations {
     /// How many faces there are.
     faces: usize,
@@ -74,12 +83,20 @@ pub(super) struct Combinations {
     direct: [Option<Extreme>; MOST],
     /// Whether F may be zero where each face is, and not only made otherwise before and behind it.
     are_met: [bool; MOST],
+    /// Whether F is nothing for some signs.
+    is_cut: bool,
 }
 
 impl Combinations {
     /// Those of what is made of so many faces.
     pub(super) fn new(made: &Made, faces: usize) -> Self {
-        let mut found = Self { faces, of: [0.0; COMBINATIONS], direct: [None; MOST], are_met: [false; MOST] };
+        let mut found = Self {
+            faces,
+            of: [0.0; COMBINATIONS],
+            direct: [None; MOST],
+            are_met: [false; MOST],
+            is_cut: matches!(made, Made::Within(_)),
+        };
         made.note_faces(&mut found.are_met);
         for number in 0..3_usize.pow(faces as u32) {
             let mut rest = number;
@@ -100,7 +117,7 @@ impl Combinations {
         found
     }
 
-    /// The sign of F where faces have these, 0 where that is not known.
+    /// The sign of F where faces have these, 0 where that is not known, NaN where F is nothing.
     #[inline]
     pub(super) fn sign(&self, of_faces: &[f64; MOST]) -> f64 {
         self.of[place_of(of_faces)]
@@ -135,6 +152,22 @@ impl Combinations {
             self.sign(&signs)
         };
         (self.is_met(face) && with(-1.0) < 0.0 && with(1.0) > 0.0).then_some(face)
+    }
+
+    /// Whether F may be nothing where some of these faces have the other sign.
+    pub(super) fn may_be_nothing(&self, of_faces: &[f64; MOST], other: impl Iterator<Item = usize>) -> bool {
+        if !self.is_cut {
+            return false;
+        }
+        let mut all = vec![*of_faces];
+        for face in other {
+            for place in 0..all.len() {
+                let mut signs = all[place];
+                signs[face] = -signs[face];
+                all.push(signs);
+            }
+        }
+        all.iter().any(|signs| self.sign(signs).is_nan())
     }
 
     /// Whether F may be zero where a face is.
@@ -202,6 +235,32 @@ mod tests {
         let found = Combinations::new(&limb, 3);
         assert_eq!(found.face_alone(&[0.0, -1.0, 1.0, 0.0]), None);
         assert_eq!(found.face_alone(&[-1.0, 0.0, 1.0, 0.0]), Some(1));
+    }
+
+    /// A sphere where either of two margins is positive, the first of which is the sphere's own.
+    #[test]
+    fn nothing_has_no_sign() {
+        let margin = Made::Of(Extreme::Greatest, vec![Made::Face(0), Made::Face(1)]);
+        let made = Made::Within(Box::new([margin, Made::Face(0)]));
+        let found = Combinations::new(&made, 2);
+        for (signs, expected) in [
+            ([1.0, -1.0], 1.0),
+            ([1.0, 0.0], 1.0),
+            ([-1.0, 1.0], -1.0),
+            ([0.0, 1.0], 0.0),
+            ([-1.0, 0.0], 0.0),
+            ([0.0, -1.0], 0.0),
+        ] {
+            let signs = [signs[0], signs[1], 0.0, 0.0];
+            assert_eq!(found.sign(&signs), expected, "{signs:?}");
+        }
+        let nothing = [-1.0, -1.0, 0.0, 0.0];
+        assert!(found.sign(&nothing).is_nan() && found.may_be_nothing(&nothing, [].into_iter()));
+        assert!(found.may_be_nothing(&[1.0, 1.0, 0.0, 0.0], [0, 1].into_iter()));
+        assert!(!found.may_be_nothing(&[1.0, 1.0, 0.0, 0.0], [0].into_iter()));
+        assert!(found.is_met(0) && !found.is_met(1));
+        assert_eq!(found.face_alone(&[0.0, 1.0, 0.0, 0.0]), Some(0));
+        assert_eq!(found.face_alone(&[0.0, -1.0, 0.0, 0.0]), None);
     }
 
     /// A corner is cut off a union: max(min(a, b, 1), c).

@@ -50,6 +50,40 @@ impl Subdivision<'_> {
         }
     }
 
+    /// Keeps slabs that may hold roots, where F is a function wherever a margin is not negative. Where that is so all over a slab, the function
+    /// alone is asked for from there on.
+    pub(super) fn keep_within(&mut self, slabs: &mut [Slab]) {
+        let Some(faces) = self.faces_of(slabs[0].kernels) else { return };
+        let Composition::Within { function, margin } = *faces else { return };
+        self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
+        self.workspace.boxes.replace(slabs.iter().map(|slab| (slab.lo, slab.hi)));
+        let found = self.left_of_smooth(margin, slabs.len());
+        let (cut, mut kept) = (slabs[0].kernels, 0);
+        for (number, margin) in found.into_iter().enumerate().take(slabs.len()) {
+            let slab = slabs[number];
+            let kernels = match margin {
+                Left::Sign { sign, .. } if sign < 0.0 => continue,
+                Left::Sign { is_defined: true, .. } => {
+                    let kernels = self.kernels(function).within(bounds_between(slab.lo, slab.hi));
+                    self.number_of(Arc::new(kernels))
+                }
+                _ => function,
+            };
+            slabs[kept] = Slab { kernels, ..slab };
+            kept += 1;
+        }
+        for slabs in slabs[..kept].chunk_by_mut(|a, b| a.kernels == b.kernels) {
+            let (is_cut, first) = (slabs[0].kernels == function, self.memory.ahead.len());
+            self.keep_open(slabs);
+            if is_cut {
+                // What may be zero may be nothing.
+                for part in &mut self.memory.ahead[first..] {
+                    *part = Part { kernels: cut, form: Form::unknown(part.form.reach), ..*part };
+                }
+            }
+        }
+    }
+
     /// Keeps a slab, with nothing known of F there.
     fn keep_unknown(&mut self, &Slab { beam, kernels, stretch, reach, is_inside, .. }: &Slab) {
         self.memory.ahead.push(Part { beam, kernels, stretch, form: Form::unknown(reach), is_inside });
@@ -65,6 +99,7 @@ impl Subdivision<'_> {
             Some(Composition::Extreme(extreme, faces)) => {
                 self.left_of_extreme(number, (*extreme, faces), slabs)
             }
+            Some(Composition::Within { .. }) => self.left_of_smooth(number, slabs.len()),
         }
     }
 
@@ -163,7 +198,7 @@ impl Subdivision<'_> {
             |face: &u32| self.kernels(*face).may_be_shortened() && self.faces_of(*face).is_none();
         let are_left_to_places = match faces.as_deref() {
             Some(Composition::Extreme(_, faces)) => faces.iter().any(is_left_to_places),
-            Some(Composition::Choice { .. }) => false,
+            Some(Composition::Choice { .. } | Composition::Within { .. }) => false,
             None => is_left_to_places(&left),
         };
         if are_left_to_places {

@@ -18,8 +18,8 @@ const KEPT: usize = 8;
 /// What rounding does to F on a box.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rounding {
-    /// The number of the kernels whose values are meant.
-    kernels: u32,
+    /// The [identity](Kernels::identity) of the function whose values are meant.
+    function: usize,
     lo: DVec3,
     hi: DVec3,
     /// By how many [units](Program::ROUNDING_UNIT) a value at a point may be off.
@@ -29,8 +29,8 @@ pub(super) struct Rounding {
 }
 
 impl Rounding {
-    fn covers(&self, kernels: u32, lo: DVec3, hi: DVec3) -> bool {
-        self.kernels == kernels && self.lo.cmple(lo).all() && hi.cmple(self.hi).all()
+    fn covers(&self, function: usize, lo: DVec3, hi: DVec3) -> bool {
+        self.function == function && self.lo.cmple(lo).all() && hi.cmple(self.hi).all()
     }
 
     /// How far F computed at a computed point of one of the beam's rays may be from F at the point itself.
@@ -44,13 +44,14 @@ impl Rounding {
 impl Subdivision<'_> {
     /// What rounding does to F on a box and around it, if that is bounded: neighbouring parts share it.
     pub(super) fn rounding_around(&mut self, kernels: u32, (lo, hi): (DVec3, DVec3)) -> Option<Rounding> {
+        let function = self.kernels(kernels).identity();
         let known = &self.memory.roundings;
-        if let Some(known) = known.iter().rev().find(|known| known.covers(kernels, lo, hi)) {
+        if let Some(known) = known.iter().rev().find(|known| known.covers(function, lo, hi)) {
             return Some(*known);
         }
+        // It holds for the function wherever that is anything to F.
         let (region, room) = (&self.certified.region, AROUND * (hi - lo));
-        let (least, most) = self.kernels(kernels).corners();
-        let around = [(lo - room).max(region.min()).max(least), (hi + room).min(region.max()).min(most)];
+        let around = [(lo - room).max(region.min()), (hi + room).min(region.max())];
         let found = self.rounding(kernels, (around[0].min(lo), around[1].max(hi)))?;
         let known = &mut self.memory.roundings;
         if known.len() == KEPT {
@@ -70,7 +71,8 @@ impl Subdivision<'_> {
             && bounds.iter().all(|bound| bound.decoration >= Decoration::Defined);
         let [of_values, gradient @ ..] = bounds.map(|bound| bound.interval.magnitude());
         let gradient = DVec3::from_array(gradient);
-        let found = Rounding { kernels, lo, hi, of_values, gradient };
+        let function = self.kernels(kernels).identity();
+        let found = Rounding { function, lo, hi, of_values, gradient };
         let is_bounded = is_known && found.of_values.is_finite() && gradient.is_finite();
         is_bounded.then_some(found)
     }
@@ -91,7 +93,7 @@ mod tests {
     #[test]
     fn a_bound_holds_for_its_own_function_inside_its_own_box() {
         let (lo, hi) = (DVec3::NEG_ONE, DVec3::ONE);
-        let bound = Rounding { kernels: 3, lo, hi, of_values: 1.0, gradient: DVec3::ONE };
+        let bound = Rounding { function: 3, lo, hi, of_values: 1.0, gradient: DVec3::ONE };
         assert!(bound.covers(3, lo, hi) && bound.covers(3, 0.5 * lo, 0.5 * hi));
         assert!(!bound.covers(2, lo, hi), "another function");
         assert!(!bound.covers(3, lo, hi + 1e-9 * DVec3::Z) && !bound.covers(3, lo - 1e-9 * DVec3::X, hi));

@@ -71,20 +71,25 @@ impl Signs<'_> {
     pub(super) fn pass(&mut self, roots: &[Root]) -> Event {
         let (before, known) = (self.made.sign(&self.signs), self.signs);
         roots.iter().for_each(|root| self.signs[root.face] = -self.signs[root.face]);
-        let is_other = self.made.sign(&self.signs) != before;
+        // Where F begins or ends it is not zero.
+        let is_other = self.made.sign(&self.signs) * before < 0.0;
         // Where F is zero, one of those is that it may be.
         let met = || roots.iter().filter(|root| self.made.is_met(root.face));
         let Some(first) = met().next() else {
             return if is_other { Event::Unclear } else { Event::Nothing };
         };
-        if let [root] = roots {
-            return if is_other { Event::Meeting(root.face, root.hit) } else { Event::Nothing };
-        }
         // What F comes to whatever signs these faces have, and if one alone has its own.
         let mut others = known;
         roots.iter().for_each(|root| others[root.face] = 0.0);
         if self.made.sign(&others) != 0.0 {
             return Event::Nothing;
+        }
+        if self.made.may_be_nothing(&known, roots.iter().map(|root| root.face)) {
+            // It may be zero before it ends, or would be behind.
+            return Event::Unclear;
+        }
+        if let [root] = roots {
+            return if is_other { Event::Meeting(root.face, root.hit) } else { Event::Nothing };
         }
         let decides = |root: &&Root| {
             let signs = [known[root.face], -known[root.face]].map(|sign| {
@@ -219,6 +224,29 @@ mod tests {
         assert_eq!(passed(&limb, [-1.0, 1.0, -1.0, 0.0], &[above]), Event::Nothing);
         // The sides change their signs in opposite ways, and what is between them is not known.
         assert_eq!(passed(&limb, [-1.0, 1.0, -1.0, 0.0], &[by, below, above]), Event::Contact);
+    }
+
+    /// A surface, face 0, within a ball, face 1, along a ray that enters the ball and leaves it.
+    #[test]
+    fn what_is_cut_is_met_where_it_is_something() {
+        let cut = |inside| Made::Within(Box::new([inside, Made::Face(0)]));
+        let ball = cut(Made::Face(1));
+        let [surface, edge] = [root(0, 2.0, 2.1), root(1, 3.0, 3.1)];
+        for (inside, expected) in [(1.0, Event::Meeting(0, surface.hit)), (-1.0, Event::Nothing)] {
+            assert_eq!(passed(&ball, [1.0, inside, 0.0, 0.0], &[surface]), expected);
+            assert_eq!(passed(&ball, [1.0, inside, 0.0, 0.0], &[edge]), Event::Nothing);
+            // Whether the surface or its edge comes first is not known, nor whether a ray that dips out meets it.
+            let near = root(1, 2.05, 2.2);
+            assert_eq!(passed(&ball, [1.0, inside, 0.0, 0.0], &[surface, near]), Event::Unclear);
+            let again = root(1, 2.15, 2.3);
+            assert_eq!(passed(&ball, [1.0, inside, 0.0, 0.0], &[surface, near, again]), Event::Unclear);
+        }
+        // Where the surface is its own margin it is zero at its end.
+        assert_eq!(passed(&cut(Made::Face(0)), POSITIVE, &[surface]), Event::Unclear);
+        // In the other one of two balls it is something whatever this one does.
+        let balls = cut(of(Extreme::Greatest, [Made::Face(1), Made::Face(2)]));
+        let roots = [surface, root(1, 2.05, 2.2)];
+        assert_eq!(passed(&balls, [1.0, 1.0, 1.0, 0.0], &roots), Event::Meeting(0, surface.hit));
     }
 
     /// The middle one of three falls to zero with two of them, and the third rises: in between it may have been zero before.

@@ -93,15 +93,15 @@ impl Subdivision<'_> {
                 slabs.extend(Slab::new((number, beam), stretch, self.least_overlap, &self.certified.region));
             }
         }
-        let are_asked = self.certified.places.are_asked();
-        if are_asked {
+        let are_several = self.certified.places.are_asked() || self.certified.kernels.are_cut();
+        if are_several {
             for slab in &mut slabs {
                 slab.kernels = self.kernels_on(slab.lo, slab.hi, kernels);
             }
         }
         // Those that stick out of the region are told otherwise.
         let are_alike =
-            |a: &Slab, b: &Slab| a.kernels == b.kernels && (!are_asked || a.is_inside == b.is_inside);
+            |a: &Slab, b: &Slab| a.kernels == b.kernels && (!are_several || a.is_inside == b.is_inside);
         for slabs in slabs.chunk_by_mut(are_alike) {
             self.keep_open(slabs);
         }
@@ -123,8 +123,11 @@ impl Subdivision<'_> {
     }
 
     /// Keeps those slabs that may hold roots. All lie where the same kernels hold.
-    fn keep_open(&mut self, mut slabs: &mut [Slab]) {
+    pub(super) fn keep_open(&mut self, mut slabs: &mut [Slab]) {
         let Some(&Slab { beam, kernels, .. }) = slabs.first() else { return };
+        if self.kernels(kernels).are_cut() {
+            return self.keep_within(slabs);
+        }
         if self.are_left_to_faces(slabs) {
             return self.keep_by_faces(slabs);
         }
@@ -159,7 +162,7 @@ impl Subdivision<'_> {
         let are_short = |faces: &[u32]| is_narrowed || operations <= SHORT * faces.len() as u64;
         self.faces_of(kernels).is_some_and(|faces| match &*faces {
             Composition::Extreme(_, faces) => !has_forms || are_short(faces),
-            Composition::Choice { .. } => !has_forms,
+            Composition::Choice { .. } | Composition::Within { .. } => !has_forms,
         })
     }
 
