@@ -326,7 +326,9 @@ fn outputs_that_cannot_be_written_are_known_before_the_work() {
     render(&case, SPHERE, &["-o", "noextension"]).exits(2);
     render(&case, SPHERE, &["--depth", "depth.png"]).exits(2).mentions("--depth writes .exr files");
     let missing = render(&case, SPHERE, &["-o", "missing/out.png", "--size", "20000x20000"]);
-    missing.exits(1).reports("error: cannot write missing/out.png: No such file or directory (os error 2)\n");
+    missing.exits(1).reports("error: cannot write missing/out.png: there is no folder missing\n");
+    let unclear = render(&case, SPHERE, &["--size", "512,512"]);
+    unclear.exits(2).mentions("expected pixels such as `640x480`, or `512` for a square, found `512,512`");
     let wide = render(&case, SPHERE, &["-o", "out.jpg", "--size", "70000x100"]);
     wide.exits(2).mentions("no more than 65535 columns and rows");
     let twice = render(&case, SPHERE, &["--depth", "same.exr", "--normals", "./same.exr"]);

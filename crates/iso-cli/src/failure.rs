@@ -98,7 +98,13 @@ pub(crate) enum Failure {
 impl Failure {
     /// A file cannot be written.
     pub(crate) fn write(path: &Path, error: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
-        Self::Write { path: path.to_owned(), error: error.into() }
+        let error = match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() && !folder.exists() => {
+                format!("there is no folder {}", folder.display()).into()
+            }
+            _ => error.into(),
+        };
+        Self::Write { path: path.to_owned(), error }
     }
 
     /// Flags that do not go together, and what to do about it.

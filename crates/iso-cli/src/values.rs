@@ -105,7 +105,11 @@ fn numbers(text: &str) -> Result<Vec<f64>, String> {
 /// `widthxheight` in pixels, or one number for a square.
 pub(crate) fn size(text: &str) -> Result<Size, String> {
     let (width, height) = text.split_once(['x', 'X', '×']).unwrap_or((text, text));
-    Size::new(count(width)?, count(height)?).map_err(|error| error.to_string())
+    let sides = [width, height].map(|side| side.trim().parse());
+    let [Ok(width), Ok(height)] = sides else {
+        return Err(format!("expected pixels such as `640x480`, or `512` for a square, found `{text}`"));
+    };
+    Size::new(width, height).map_err(|error| error.to_string())
 }
 
 /// One colour for both, or two: names of CSS, or `#rrggbb`.

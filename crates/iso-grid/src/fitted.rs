@@ -4,10 +4,11 @@ mod cells;
 mod facing;
 mod sphere;
 
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 use glam::{DVec3, IVec3};
-use iso_expr::{BoxKernel, CompileError, Decorated};
+use iso_expr::{BoxKernel, CompileError, Decorated, Interval, Program};
 
 use crate::{Kernel, Region, RegionError, Surface, Workspace};
 use cells::{BEFORE, enclose};
@@ -16,6 +17,12 @@ pub use sphere::Sphere;
 
 /// Half the sides of the cubes around the origin in which the surface is looked for, one after the other.
 const HALF_SIDES: [f64; 5] = [2.0, 8.0, 32.0, 128.0, 512.0];
+
+/// All of them are larger where the first one would hold fewer waves of a sine or cosine than these,
+const WAVES: f64 = 2.0;
+
+/// but no more than so many times: what hardly changes there is likely to matter little.
+const SLOWEST: f64 = 32.0;
 
 /// Those in which it is looked for if nothing is found in them, or if it is cut off in the last of them.
 const FARTHER: [f64; 6] = [2048.0, 8192.0, 32_768.0, 131_072.0, 524_288.0, 2_097_152.0];
@@ -108,7 +115,8 @@ impl Fitted {
     /// region is drawn around it in the first cube whose faces it does not meet, or in a larger one if that is proven to hold more of it
     /// and its faces are not met either. If there is none, that cube is taken where it meets the faces of the fewest axes, and
     /// [`Region::standard`] where nothing is found at all. Inside the cube that was taken nothing of the surface is left out. It is looked
-    /// for up to 512 from the origin, or up to 2²¹ if it is nowhere nearer, and one cube farther than the one that is taken.
+    /// for up to 512 from the origin, or up to 2²¹ if it is nowhere nearer, and one cube farther than the one that is taken; of surfaces with long
+    /// waves the cubes are larger, so that the first one holds two.
     ///
     /// When the surface's [`Stop`](crate::Stop) is requested, any region.
     ///
@@ -120,12 +128,13 @@ impl Fitted {
         let is_stopped = || surface.stop().is_requested();
         let mut best: Option<(usize, Glimpse)> = None;
         let mut goes_on = false;
+        let scale = scale(surface.program());
         for (number, half_side) in HALF_SIDES.into_iter().chain(FARTHER).enumerate() {
             let is_enough = |(taken, _): &(usize, Glimpse)| number >= HALF_SIDES.len().max(taken + 2);
             if is_stopped() || best.as_ref().is_some_and(is_enough) {
                 break;
             }
-            let cube = cube(half_side);
+            let cube = cube(scale * half_side);
             let mut cells = cube.open_cells(kernel, workspace);
             let Some(found) = cube.glimpse(&cells, kernel, workspace) else { continue };
             let Some((taken, known)) = &best else {
@@ -205,6 +214,13 @@ impl Region {
         let is_inner = |cell: &IVec3| cell.to_array().iter().all(|along| INNER_HALF.contains(along));
         Some(Glimpse { held, axes_met, is_scrap: axes_met > 0 && !cells.iter().any(is_inner) })
     }
+}
+
+/// How many times larger than usual a cube must be to show some waves of a program.
+fn scale(program: &Program) -> f64 {
+    let side = Interval { lo: -HALF_SIDES[0], hi: HALF_SIDES[0] };
+    let scales = program.phases([side; 3]).map(|phase| WAVES * TAU / phase);
+    scales.filter(|scale| *scale <= SLOWEST).fold(1.0, f64::max)
 }
 
 fn cube(half_side: f64) -> Region {

@@ -35,7 +35,7 @@ const CALLS: [(&str, &str); 29] = [
 ];
 
 /// Functions that other programs have and no formula here gives.
-const SPECIAL: [&str; 12] = [
+const SPECIAL: [&str; 15] = [
     "erf",
     "erfc",
     "gamma",
@@ -48,7 +48,14 @@ const SPECIAL: [&str; 12] = [
     "bessel",
     "factorial",
     "noise",
+    "sn",
+    "cn",
+    "dn",
 ];
+
+/// What surrounds formulas elsewhere.
+const FRAMES: [&str; 7] =
+    ["contourplot3d", "implicitplot3d", "implicit_plot3d", "isosurface", "function", "plot", "surface"];
 
 /// What to do without infinity.
 pub(super) const FINITE: &str = "numbers are finite: write one that is large enough, such as `1e9`";
@@ -74,6 +81,9 @@ pub(super) fn not_here(name: &str) -> Option<String> {
     if NO_NUMBERS.contains(&&*name) {
         return Some(FINITE.to_owned());
     }
+    if FRAMES.contains(&&*name) {
+        return Some("write the formula alone, as in `x^2 + y^2 + z^2 = 1`".to_owned());
+    }
     LIBRARIES.contains(&&*name).then(|| format!("functions have no library before them: leave out `{name}.`"))
 }
 
@@ -94,6 +104,11 @@ mod tests {
             ("erf(x) = y", "there is no `erf` here"),
             ("x = Infinity", "numbers are finite"),
             ("math.sin(x) = y", "leave out `math.`"),
+            ("function { x*x + y*y - 1 }", "write the formula alone"),
+            ("ContourPlot3D[x == y, {x, -1, 1}]", "write the formula alone"),
+            ("x + 1_000", "without a break"),
+            ("z(x, y) = x^2", "is written `z = …`"),
+            ("arctan(y, x) = z", "atan2(y, x)"),
         ] {
             let help = Ast::parse(formula).unwrap_err().help.unwrap();
             assert!(help.contains(expected), "{formula}: {help}");

@@ -87,7 +87,8 @@ pub(super) fn argument_count(
     if name == "log" && given == 1 {
         return bare_logarithm(span);
     }
-    let pattern = if name == "atan" && given == 2 { "atan2(y, x)".to_owned() } else { pattern };
+    let pattern =
+        if matches!(name, "atan" | "arctan") && given == 2 { "atan2(y, x)".to_owned() } else { pattern };
     let kind =
         FormulaErrorKind::ArgumentCount { function: shortened(name), given, expected: expected.shown() };
     FormulaError::new(kind, span).with_help(format!("it is called as `{}`", shortened(&pattern)))
@@ -106,7 +107,9 @@ pub(super) fn unclosed(open: &Item<'_>) -> FormulaError {
 pub(super) fn stray_comma(item: &Item<'_>, is_between_numbers: bool) -> FormulaError {
     FormulaError::new(FormulaErrorKind::StrayComma, item.span()).with_help(match is_between_numbers {
         true => "decimals are written with a point, as in `0.5`",
-        false => "commas part the arguments of functions; `;` or a new line ends a definition",
+        false => {
+            "commas part the arguments of functions; `z(x, y) = …` is written `z = …`, and `;` or a new line ends a definition"
+        }
     })
 }
 
@@ -142,6 +145,7 @@ pub(super) fn stray(item: &Item<'_>) -> FormulaError {
         '°' => Some("angles are in radians: write `*pi/180`"),
         '½' | '⅓' | '⅔' | '¼' | '¾' => Some("write fractions as `1/2`"),
         '₀'..='₉' => Some("write indices as digits: `x1`"),
+        '_' => Some("digits are written without a break: `1000`; names begin with a letter"),
         '?' => Some("write `if(condition, a, b)`"),
         _ => None,
     };

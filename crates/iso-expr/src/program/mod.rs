@@ -14,6 +14,7 @@ pub(crate) mod reference;
 mod rounding;
 mod shorten;
 mod simplify;
+mod waves;
 
 use std::hash::{Hash, Hasher};
 
