@@ -119,7 +119,9 @@ impl Program {
     /// What is left where all of its cuts are numbers.
     fn within(&self) -> Option<Composition<Self>> {
         let cuts: Vec<Cut> = self.cuts().collect();
-        let margins: Vec<NodeId> = cuts.iter().map(|cut| cut.margin).collect();
+        let mut margins: Vec<NodeId> = cuts.iter().map(|cut| cut.margin).collect();
+        margins.sort_unstable();
+        margins.dedup();
         let mut margin = self.pruned_to(&margins);
         let least = margin.outputs.clone().into_iter();
         let least = least.reduce(|a, b| margin.apply(Operation::Minimum, &[a, b]))?;
@@ -134,7 +136,10 @@ impl Program {
     /// What `make` makes of it, where it is cut of what is left within.
     pub(super) fn with_what_is_cut(&self, make: impl Fn(&Self) -> Self) -> Self {
         match self.within() {
-            Some(Composition::Within { function, margin }) => make(&function).cut_to(&margin),
+            Some(Composition::Within { function, margin }) => match make(&function) {
+                made if made == function => self.clone(),
+                made => made.cut_to(&margin),
+            },
             _ => make(self),
         }
     }

@@ -125,7 +125,7 @@ impl Subdivision<'_> {
     /// Keeps those slabs that may hold roots. All lie where the same kernels hold.
     pub(super) fn keep_open(&mut self, mut slabs: &mut [Slab]) {
         let Some(&Slab { beam, kernels, .. }) = slabs.first() else { return };
-        if self.kernels(kernels).are_cut() {
+        if self.kernels(kernels).are_cut() && self.faces_of(kernels).is_some() {
             return self.keep_within(slabs);
         }
         if self.are_left_to_faces(slabs) {
