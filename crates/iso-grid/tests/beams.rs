@@ -8,7 +8,7 @@ use iso_expr::{Ast, Interpreter, Program};
 use iso_grid::{Certified, Hit, Outcome, Raster, Ray, Region, Span, Surface, Tile, Tracer, Workspace};
 
 /// Formulas, half sides of their regions, and what they are tried for.
-const SCENES: [(&str, f64, &str); 60] = [
+const SCENES: [(&str, f64, &str); 61] = [
     ("(x^2+y^2-1)^2 + 4z^2 + 0.5x - 0.2", 1.5, "a classic"),
     ("x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8", 2.6, "parts in front of each other"),
     ("sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)", 5.0, "cut by the region's faces"),
@@ -84,6 +84,7 @@ const SCENES: [(&str, f64, &str); 60] = [
         1.4,
         "a heart, cut and followed by roots of cubes",
     ),
+    ("x^2+y^2+z^2-1 + (1 + 0sqrt(x+0.3) - 1)*sqrt(y+0.4)", 1.2, "a cut that simplifying uncovers"),
     (SHARP, 1.3, "a sharp blend, whose exponentials underflow not far from the surface"),
 ];
 

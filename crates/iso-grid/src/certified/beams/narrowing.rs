@@ -57,10 +57,6 @@ impl Subdivision<'_> {
         let Some(&Composition::Within { function, margin }) = faces.as_deref() else {
             return slabs.iter().for_each(|slab| self.keep_unknown(slab));
         };
-        if self.kernels(function).are_cut() {
-            // What simplifying cuts anew stays as it is: there may be thousands of such cuts inside each other.
-            self.faces[function as usize] = Known::Everywhere(None);
-        }
         self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
         self.workspace.boxes.replace(slabs.iter().map(|slab| (slab.lo, slab.hi)));
         let found = self.left_of_smooth(margin, slabs.len());
@@ -71,11 +67,7 @@ impl Subdivision<'_> {
                 Left::Sign { sign, .. } if sign < 0.0 => continue,
                 Left::Sign { is_defined: true, .. } => {
                     let kernels = self.kernels(function).within(bounds_between(slab.lo, slab.hi));
-                    let number = self.number_of(Arc::new(kernels));
-                    if self.kernels(function).are_cut() {
-                        self.faces[number as usize] = Known::Everywhere(None);
-                    }
-                    number
+                    self.number_of(Arc::new(kernels))
                 }
                 _ => function,
             };
