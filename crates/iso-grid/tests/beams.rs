@@ -474,3 +474,26 @@ fn shortened_formulas_prove_what_whole_ones_do() {
         }
     }
 }
+
+/// What is found free of roots near an edge is not looked at over and over.
+#[test]
+fn cut_balls_take_about_as_many_enclosures_as_whole_ones() {
+    let mut random = Random::new(8);
+    let mut balls = String::from("9");
+    for _ in 0..60 {
+        let [x, y, z] = [(); 3].map(|()| random.between(-1.0, 1.0));
+        balls = format!("min({balls}, sqrt((x - ({x}))^2 + (y - ({y}))^2 + (z - ({z}))^2) - 0.12)");
+    }
+    let whole = certified(&read(&balls), 1.2);
+    let cut = certified(&read(&format!("({balls}) where z < 0.3")), 1.2);
+    for View { name, rays, width, .. } in views(1.2, 64, 64) {
+        let [whole, cut] = [&whole, &cut].map(|tracer| {
+            let (mut workspace, mut outcomes) = (Workspace::default(), vec![Outcome::Miss; rays.len()]);
+            tracer.trace_tile(&mut workspace, Tile::listed(&rays, width), &mut outcomes, None);
+            workspace.counters
+        });
+        let is_about = |cut: u64, whole: u64| 4 * cut < 5 * whole;
+        assert!(is_about(cut.box_evaluations, whole.box_evaluations), "{name}: {cut:?}, whole {whole:?}");
+        assert!(is_about(cut.operations, whole.operations), "{name}: {cut:?}, whole {whole:?}");
+    }
+}

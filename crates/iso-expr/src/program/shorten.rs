@@ -217,6 +217,9 @@ impl Findings {
             (None, O::Add, Demand::Side(0.0)) if let Some(of) = exact(1) => {
                 &[(0, Demand::Side(-of)), (1, Demand::Value)]
             }
+            // The other summand is as much on a side as the sum, wherever that is a number.
+            (None, O::Add, Demand::Side(_)) if is_zero(enclosures[1]) => &[(0, demand), (1, Demand::Value)],
+            (None, O::Add, Demand::Side(_)) if is_zero(enclosures[0]) => &[(0, Demand::Value), (1, demand)],
             (None, ..) => &[(0, Demand::Value), (1, Demand::Value), (2, Demand::Value)][..operation.arity()],
         };
         for (number, demand) in asked {
@@ -275,6 +278,11 @@ fn decision_by_side(operation: Operation, [a, b, _]: [Decorated; 3], of: f64) ->
     } else {
         None
     }
+}
+
+/// Whether it is zero wherever it is a number, which may be nowhere.
+fn is_zero(enclosure: Decorated) -> bool {
+    enclosure.interval == Interval::point(0.0) || enclosure.interval.is_empty()
 }
 
 fn is_common(enclosure: Decorated) -> bool {

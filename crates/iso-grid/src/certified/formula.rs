@@ -31,6 +31,8 @@ pub(super) struct Formula {
     patience: Patience,
     /// Before each kernel is compiled that is not compiled ahead.
     patience_for: [Patience; Kernel::ALL.len()],
+    /// Whether it is F as it is everywhere.
+    is_whole: bool,
     has_branches: bool,
     is_cut: bool,
     /// Whether it is certainly a number everywhere, found when first asked for.
@@ -146,10 +148,12 @@ impl Formula {
             _ => 0,
         };
         if is_left_to_places {
-            return Ok(Self::new(surface.made_for_few_runs(), Patience::limited(program), least_with_forms));
+            let formula =
+                Self::new(surface.made_for_few_runs(), Patience::limited(program), least_with_forms);
+            return Ok(Self { is_whole: true, ..formula });
         }
         Kernel::of_proofs(Kernel::Forms.pays(program)).try_for_each(|kernel| surface.compile(kernel))?;
-        Ok(Self::new(surface.clone(), Patience::endless(), least_with_forms))
+        Ok(Self { is_whole: true, ..Self::new(surface.clone(), Patience::endless(), least_with_forms) })
     }
 
     fn new(surface: Surface, patience: Patience, least_with_forms: usize) -> Self {
@@ -162,6 +166,7 @@ impl Formula {
             surface: Arc::new(surface),
             compiled: OnceLock::new(),
             patience,
+            is_whole: false,
             has_branches,
             is_cut,
             is_defined_everywhere: OnceLock::new(),
@@ -205,7 +210,9 @@ impl Formula {
         let find = || {
             let one_of = |program| formulas.one_of(program, self);
             Some(match self.program().composition(LONGEST_CHOICE)? {
-                Composition::Within { function, margin } if !Kernel::are_left_to_places(&function) => {
+                Composition::Within { function, margin }
+                    if self.is_whole && !Kernel::are_left_to_places(&function) =>
+                {
                     // It is asked for wherever anything is to be seen.
                     let function = formulas.one_with(function, self, Patience::none());
                     Composition::Within { function, margin: one_of(margin) }

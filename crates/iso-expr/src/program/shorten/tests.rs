@@ -1,5 +1,5 @@
 use crate::random::Random;
-use crate::{Ast, Interval, Program};
+use crate::{Ast, Interval, Operation, Program};
 
 fn program(formula: &str) -> Program {
     Ast::parse(formula).unwrap().lower(&[]).unwrap().program().simplified()
@@ -97,13 +97,39 @@ fn sums_of_sums_keep_their_terms() {
     assert_eq!(as_it_stands.shortened(cube(0.25, 1.0)).map(|short| short.operations()), None);
 }
 
+/// Where a formula is cut, it only matters on which side of zero it lies, if it is a number at all.
+#[test]
+fn what_is_cut_is_shortened_as_the_whole_is() {
+    assert_left(&[
+        ("min(x - 0.5, y) where z < 0.7", 5),
+        ("max(x - 0.5, exp(-y z) - 9 - sin(x)*cos(y + z)^2*exp(x + y)) where z < 0.7 or y > x", 7),
+        // There is nothing in all of the box.
+        ("min(x - 0.5, y) where z > 2", 5),
+    ]);
+    for formula in ["exp(min(x - 0.5, y - 0.25)) - 1 where z < 0.7", "min(x - 0.5, y) + z/8 where z < 0.7"] {
+        assert_eq!(operations_left(formula, 0.25, 1.0), None, "{formula}");
+    }
+}
+
+/// The same program, nothing where one of its values is negative.
+fn cut(mut program: Program, random: &mut Random) -> Program {
+    let ids: Vec<_> = program.iter().map(|(id, _)| id).collect();
+    let root = program.apply(Operation::SquareRoot, &[random.choose(&ids)]);
+    let zero = program.literal(0.0);
+    let nothing = program.apply(Operation::Multiply, &[zero, root]);
+    let output = program.apply(Operation::Add, &[program.outputs[0], nothing]);
+    program.set_outputs(vec![output]);
+    program
+}
+
 /// What random programs come to on random boxes has their signs there, in doubles, and is undefined where they are.
 #[test]
 fn shortened_programs_have_the_same_signs() {
     let mut random = Random::new(5);
     let (mut shortened, mut differ) = (0, 0);
     for _ in 0..40_000 {
-        let program = random.program(1 + shortened % 24).simplified();
+        let program = random.program(1 + shortened % 24);
+        let program = if random.below(3) == 0 { cut(program, &mut random) } else { program }.simplified();
         let domain = [(); 3].map(|()| {
             let (center, radius) = (random.between(-3.0, 3.0), 10f64.powf(random.between(-4.0, 0.5)));
             Interval::new(center - radius, center + radius).unwrap()

@@ -74,7 +74,8 @@ impl Subdivision<'_> {
             slabs[kept] = Slab { kernels, ..slab };
             kept += 1;
         }
-        for slabs in slabs[..kept].chunk_by_mut(|a, b| a.kernels == b.kernels) {
+        // Those with an edge are kept one by one: joined, they would be cut again as they were.
+        for slabs in slabs[..kept].chunk_by_mut(|a, b| a.kernels == b.kernels && a.kernels != function) {
             let (is_cut, first) = (slabs[0].kernels == function, self.memory.ahead.len());
             self.keep_open(slabs);
             if is_cut {
