@@ -80,6 +80,11 @@ impl Kernel {
         }
     }
 
+    /// Whether it gives affine forms.
+    pub(crate) fn makes_forms(self) -> bool {
+        matches!(self, Self::Forms | Self::ParallelForms)
+    }
+
     /// Whether it is compiled ahead of its use. What is asked for seldom is made for few runs until it was asked for often: for many
     /// pictures that is never. Where there are forms, enclosures of the gradient are asked for only where those say too little.
     pub fn is_compiled_ahead(self, has_forms: bool) -> bool {
