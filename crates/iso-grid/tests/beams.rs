@@ -5,7 +5,9 @@ use std::sync::Arc;
 use glam::DVec3;
 use iso_expr::random::Random;
 use iso_expr::{Ast, Interpreter, Program};
-use iso_grid::{Certified, Hit, Outcome, Raster, Ray, Region, Span, Surface, Tile, Tracer, Workspace};
+use iso_grid::{
+    Certified, Counters, Hit, Outcome, Raster, Ray, Region, Span, Surface, Tile, Tracer, Workspace,
+};
 
 /// Formulas, half sides of their regions, and what they are tried for.
 const SCENES: [(&str, f64, &str); 61] = [
@@ -447,18 +449,23 @@ fn rays_of_a_tile_may_be_too_slow() {
     }
 }
 
+/// What a tile holds, and what that took.
+fn counted(tracer: &Certified, tile: Tile<'_>) -> (Vec<Outcome>, Counters) {
+    let (mut workspace, mut outcomes) = (Workspace::default(), vec![Outcome::Miss; tile.len()]);
+    tracer.trace_tile(&mut workspace, tile, &mut outcomes, None);
+    (outcomes, workspace.counters)
+}
+
 #[test]
 fn shortened_formulas_prove_what_whole_ones_do() {
     for (formula, half, name) in [SCENES[18], SCENES[19]] {
         let value = read(formula);
         let (shortened, whole) = (certified(&value, half), certified(&value, half).with_whole_formula());
         for View { name: view, rays, width, .. } in views(half, 48, 40) {
-            let trace = |tracer: &Certified| {
-                let (mut workspace, mut outcomes) = (Workspace::default(), vec![Outcome::Miss; rays.len()]);
-                tracer.trace_tile(&mut workspace, Tile::listed(&rays, width), &mut outcomes, None);
-                (outcomes, workspace.counters.operations)
-            };
-            let ((short, fewer), (long, more)) = (trace(&shortened), trace(&whole));
+            let [(short, fewer), (long, more)] = [&shortened, &whole].map(|tracer| {
+                let (outcomes, counters) = counted(tracer, Tile::listed(&rays, width));
+                (outcomes, counters.operations)
+            });
             let expected = if formula == BALLS { fewer < more } else { fewer <= more };
             assert!(expected, "{name}, {view}: {fewer} operations instead of {more}");
             for (ray, (short, long)) in rays.iter().zip(short.iter().zip(&long)) {
@@ -487,11 +494,7 @@ fn cut_balls_take_about_as_many_enclosures_as_whole_ones() {
     let whole = certified(&read(&balls), 1.2);
     let cut = certified(&read(&format!("({balls}) where z < 0.3")), 1.2);
     for View { name, rays, width, .. } in views(1.2, 64, 64) {
-        let [whole, cut] = [&whole, &cut].map(|tracer| {
-            let (mut workspace, mut outcomes) = (Workspace::default(), vec![Outcome::Miss; rays.len()]);
-            tracer.trace_tile(&mut workspace, Tile::listed(&rays, width), &mut outcomes, None);
-            workspace.counters
-        });
+        let [whole, cut] = [&whole, &cut].map(|tracer| counted(tracer, Tile::listed(&rays, width)).1);
         let is_about = |cut: u64, whole: u64| 4 * cut < 5 * whole;
         assert!(is_about(cut.box_evaluations, whole.box_evaluations), "{name}: {cut:?}, whole {whole:?}");
         assert!(is_about(cut.operations, whole.operations), "{name}: {cut:?}, whole {whole:?}");

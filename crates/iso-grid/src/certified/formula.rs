@@ -17,9 +17,8 @@ const ROOM: u64 = 1 << 23;
 /// and to wait a quarter as long a tenth more for a union of a hundred balls.
 const OFTEN: u64 = 1 << 17;
 
-/// An operation of forms counts as so many: before it is compiled it is interpreted, for few slabs at a time. Measured: for a bear of 662 operations
-/// (Keeter's benchmark of 2020) the processor carries out a twelfth less than when it counts as one.
-const OF_FORMS: u64 = 4;
+/// About how many times as long an operation takes at points, or of forms, in kernels that are made for few runs, where it is interpreted.
+pub(super) const INTERPRETED: u64 = 4;
 
 /// A function of more operations is not followed through kinks inside it: that takes each side of all of them. Measured: for a body of 600
 /// operations with smooth seams a fifth more time.
@@ -246,7 +245,8 @@ impl Formula {
 
     /// Notes that so many operations of a kernel were asked for.
     pub(super) fn wear(&self, kernel: Kernel, operations: u64) {
-        let operations = operations * if kernel.makes_forms() { OF_FORMS } else { 1 };
+        // Counted so, a bear of 662 operations (Keeter's benchmark of 2020) takes a twelfth fewer instructions.
+        let operations = operations * if kernel.makes_forms() { INTERPRETED } else { 1 };
         if self.patience.wear(operations) {
             let surface = self.surface.made_for_many_runs();
             if Kernel::of_proofs(self.has_forms).all(|kernel| surface.compile(kernel).is_ok()) {

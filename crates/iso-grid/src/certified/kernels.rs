@@ -8,14 +8,11 @@ use iso_expr::{
     BatchKernel, BoxKernel, CompileError, Composition, Decorated, Decoration, Interval, Program, Scratch,
 };
 
-use super::formula::{Formula, Formulas, compiled};
+use super::formula::{Formula, Formulas, INTERPRETED, compiled};
 use crate::{Kernel, Surface};
 
 /// How many boxes are enclosed by one call at most.
 pub(super) const BATCH: usize = 8;
-
-/// About how much longer an operation takes at points in kernels that are made for few runs, where it is interpreted.
-const MUCH_LESS: u64 = 4;
 
 /// An axis-parallel box.
 pub(super) type Bounds = [Interval; 3];
@@ -129,7 +126,7 @@ impl Kernels {
     /// hand.
     pub(super) fn gradients_at_points(&self, others: &Self) -> Option<Arc<dyn BatchKernel>> {
         let [these, those] = [self, others].map(|kernels| kernels.operations(Kernel::Gradients));
-        let pays = MUCH_LESS * these <= those || Kernel::are_left_to_places(others.program());
+        let pays = INTERPRETED * these <= those || Kernel::are_left_to_places(others.program());
         pays.then(|| Arc::clone(compiled(self.formula.seldom().over_points(Kernel::Gradients))))
     }
 
