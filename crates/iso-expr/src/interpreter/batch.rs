@@ -1,6 +1,6 @@
 //! Many points, a block at a time.
 
-use super::block::{self, Block, Loop, Operand};
+use super::block::{self, Loop, Rows};
 use super::code::Code;
 use super::dispatch::{Visitor, visit};
 use crate::engine::{BatchKernel, Scratch};
@@ -9,16 +9,14 @@ use crate::engine::{BatchKernel, Scratch};
 #[derive(Debug)]
 pub(super) struct Batch {
     code: Code,
-    constants: Vec<f64>,
     /// The most points in a block.
     block: usize,
 }
 
 impl Batch {
     pub(super) fn new(code: Code) -> Self {
-        let constants = code.constants.iter().map(|constant| constant.value()).collect();
-        let block = block::length::<f64>(code.registers);
-        Self { code, constants, block }
+        let block = block::length::<f64>(code.slots);
+        Self { code, block }
     }
 }
 
@@ -28,17 +26,20 @@ impl BatchKernel for Batch {
         assert!(arguments.iter().all(|argument| argument.len() == count), "all arguments of each point");
         let arguments = &arguments[..self.code.arguments];
         assert_eq!(values.len(), count * self.code.outputs.len(), "one value for each output and point");
-        let registers = scratch.values(self.code.registers * self.block);
-        for start in (0..count).step_by(self.block) {
-            let range = start..count.min(start + self.block);
-            let block =
-                Block { arguments, places: range.clone(), constants: &self.constants, stride: self.block };
-            block.run(&self.code, registers, |operation, lanes| visit(operation, lanes));
+        let block = self.block.min(count);
+        let mut rows = Rows::new(scratch.values(self.code.slots * block), block);
+        for (slot, constant) in self.code.constants() {
+            rows.row_mut(slot).fill(constant.value());
+        }
+        for start in (0..count).step_by(block.max(1)) {
+            let places = start..count.min(start + block);
+            rows.shorten(places.len());
+            for (slot, argument) in (0..).zip(arguments) {
+                rows.row_mut(slot).copy_from_slice(&argument[places.clone()]);
+            }
+            rows.run(&self.code, |operation, lanes| visit(operation, lanes));
             for (output, values) in self.code.outputs.iter().zip(values.chunks_exact_mut(count)) {
-                match block.output(*output, registers) {
-                    Operand::Lanes(lanes) => values[range.clone()].copy_from_slice(lanes),
-                    Operand::Constant(constant) => values[range.clone()].fill(constant),
-                }
+                values[places.clone()].copy_from_slice(rows.row(*output));
             }
         }
     }

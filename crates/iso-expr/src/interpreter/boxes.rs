@@ -1,26 +1,23 @@
 //! Many boxes, a block at a time.
 
-use super::block::{self, Block, Loop};
-use super::code::Code;
+use super::block::{self, Loop, Rows};
+use super::code::{Code, Slot};
 use crate::engine::{BoxKernel, Boxes, Enclosures, Scratch};
 use crate::interval::extension;
-use crate::{Decorated, Extension, Operation};
+use crate::{Axis, Decorated, Extension, Operation};
 
 /// A kernel over batches of boxes.
 #[derive(Debug)]
 pub(super) struct Boxed {
     code: Code,
-    constants: Vec<Decorated>,
     /// The most boxes in a block.
     block: usize,
 }
 
 impl Boxed {
     pub(super) fn new(code: Code) -> Self {
-        let constants =
-            code.constants.iter().map(|constant| Decorated::constant(constant.enclosure())).collect();
-        let block = block::length::<Decorated>(3 + code.registers);
-        Self { code, constants, block }
+        let block = block::length::<Decorated>(code.slots);
+        Self { code, block }
     }
 }
 
@@ -36,30 +33,25 @@ impl BoxKernel for Boxed {
             "an enclosure for each output and box"
         );
 
-        let room = scratch.enclosures((3 + self.code.registers) * self.block);
-        let (arguments, registers) = room.split_at_mut(3 * self.block);
-        for start in (0..count).step_by(self.block) {
-            let length = self.block.min(count - start);
-            for (axis, arguments) in arguments.chunks_exact_mut(self.block).enumerate() {
-                let ends = boxes.lo[axis][start..].iter().zip(&boxes.hi[axis][start..]);
-                for (argument, (lo, hi)) in arguments.iter_mut().zip(ends) {
+        let block = self.block.min(count);
+        let mut rows = Rows::new(scratch.enclosures(self.code.slots * block), block);
+        for (slot, constant) in self.code.constants() {
+            rows.row_mut(slot).fill(Decorated::constant(constant.enclosure()));
+        }
+        for start in (0..count).step_by(block.max(1)) {
+            let places = start..count.min(start + block);
+            rows.shorten(places.len());
+            for axis in Axis::ALL {
+                let [lo, hi] = [boxes.lo, boxes.hi].map(|ends| &ends[axis as usize][places.clone()]);
+                for (argument, (lo, hi)) in rows.row_mut(axis as Slot).iter_mut().zip(lo.iter().zip(hi)) {
                     *argument = Decorated::argument(*lo, *hi);
                 }
             }
-            let argument = |axis: usize| &arguments[axis * self.block..];
-            let block = Block {
-                arguments: &[argument(0), argument(1), argument(2)],
-                places: 0..length,
-                constants: &self.constants,
-                stride: self.block,
-            };
-            block.run(&self.code, registers, extend);
-            for (place, output) in self.code.outputs.iter().enumerate() {
-                let enclosures = block.output(*output, registers);
-                for lane in 0..length {
-                    let (enclosure, place) = (enclosures.at(lane), place * count + start + lane);
-                    (lo[place], hi[place]) = (enclosure.interval.lo, enclosure.interval.hi);
-                    decoration[place] = enclosure.decoration;
+            rows.run(&self.code, extend);
+            for (output, place) in self.code.outputs.iter().zip((start..).step_by(count)) {
+                for (lane, enclosure) in rows.row(*output).iter().enumerate() {
+                    (lo[place + lane], hi[place + lane]) = (enclosure.interval.lo, enclosure.interval.hi);
+                    decoration[place + lane] = enclosure.decoration;
                 }
             }
         }

@@ -9,8 +9,8 @@ pub(super) type Slot = u32;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Instruction {
     pub(super) operation: Operation,
-    /// A register, counted from the first register; never one of the operands.
-    pub(super) target: u32,
+    /// A register; never one of the operands.
+    pub(super) target: Slot,
     /// Only as many as the operation's arity count; the rest repeat the first one.
     pub(super) operands: [Slot; 3],
 }
@@ -22,8 +22,8 @@ pub(super) struct Code {
     pub(super) arguments: usize,
     pub(super) instructions: Vec<Instruction>,
     pub(super) constants: Vec<Constant>,
-    /// How many registers there are.
-    pub(super) registers: usize,
+    /// How many slots there are.
+    pub(super) slots: usize,
     pub(super) outputs: Vec<Slot>,
 }
 
@@ -36,46 +36,46 @@ impl Code {
             .filter_map(|node| if let Node::Constant(constant) = node { Some(*constant) } else { None })
             .collect();
         let arguments = program.arguments().max(Axis::ALL.len());
-        let mut code =
-            Self { arguments, instructions: Vec::new(), constants, registers: 0, outputs: Vec::new() };
+        let slots = arguments + constants.len();
+        let mut code = Self { arguments, instructions: Vec::new(), constants, slots, outputs: Vec::new() };
         code.assign_slots(program);
         code
     }
 
-    /// The slot of the first register.
-    pub(super) fn first_register(&self) -> usize {
-        self.arguments + self.constants.len()
+    /// Each constant with its slot.
+    pub(super) fn constants(&self) -> impl Iterator<Item = (Slot, Constant)> {
+        (self.arguments as Slot..).zip(self.constants.iter().copied())
     }
 
     /// Walks the nodes in order, gives each operation the register that was freed last, and frees registers after the
     /// last instruction that reads them.
     fn assign_slots(&mut self, program: &Program) {
         let last_reader = last_readers(program);
-        let first_register = self.first_register();
+        let first_register = self.slots as Slot;
         let mut slots: Vec<Slot> = Vec::with_capacity(program.nodes().len());
-        let mut free: Vec<u32> = Vec::new();
-        let mut constants = self.arguments..;
+        let mut free: Vec<Slot> = Vec::new();
+        let mut constants = self.arguments as Slot..;
         for (id, node) in program.iter() {
             let slot = match node {
-                Node::Variable(argument) => argument.index(),
+                Node::Variable(argument) => argument.index() as Slot,
                 Node::Constant(_) => constants.next().expect("the range has no end"),
                 Node::Apply(operation, operands) => {
                     // Taken before the operands' registers are freed, so that no loop reads what it writes.
                     let target = free.pop().unwrap_or_else(|| {
-                        self.registers += 1;
-                        self.registers as u32 - 1
+                        self.slots += 1;
+                        self.slots as Slot - 1
                     });
                     let operands = operands.map(|operand| slots[operand.index()]);
                     self.instructions.push(Instruction { operation: *operation, target, operands });
-                    first_register + target as usize
+                    target
                 }
             };
-            slots.push(slot as Slot);
+            slots.push(slot);
             for (place, operand) in node.operands().iter().enumerate() {
                 let is_repeated = node.operands()[..place].contains(operand);
-                if last_reader[operand.index()] == Some(id) && !is_repeated {
-                    let register = (slots[operand.index()] as usize).checked_sub(first_register);
-                    free.extend(register.map(|register| register as u32));
+                let slot = slots[operand.index()];
+                if last_reader[operand.index()] == Some(id) && !is_repeated && slot >= first_register {
+                    free.push(slot);
                 }
             }
         }

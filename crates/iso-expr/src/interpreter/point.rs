@@ -21,14 +21,13 @@ impl Point {
 impl PointKernel for Point {
     fn evaluate(&self, scratch: &mut Scratch, x: f64, y: f64, z: f64, values: &mut [f64]) {
         assert_eq!(values.len(), self.code.outputs.len(), "one value for each output");
-        let first_register = self.code.first_register();
-        let slots = scratch.values(first_register + self.code.registers);
+        let slots = scratch.values(self.code.slots);
         let (arguments, others) = slots.split_at_mut(self.code.arguments);
         arguments.copy_from_slice(&[x, y, z]);
         others[..self.constants.len()].copy_from_slice(&self.constants);
         for instruction in &self.code.instructions {
             let result = visit(instruction.operation, Operands { slots, places: instruction.operands });
-            slots[first_register + instruction.target as usize] = result;
+            slots[instruction.target as usize] = result;
         }
         for (value, output) in values.iter_mut().zip(&self.code.outputs) {
             *value = slots[*output as usize];
