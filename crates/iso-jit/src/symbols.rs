@@ -21,6 +21,9 @@ const BOTH_IN_LANES: &str = "iso_both_in_lanes";
 /// The function that applies interval extensions.
 const EXTEND: &str = "iso_extend";
 
+/// The function that applies interval extensions by values at the ends.
+const EXTEND_BY_ENDS: &str = "iso_extend_by_ends";
+
 /// The function that applies the extensions of sine and cosine.
 const EXTEND_TO_BOTH: &str = "iso_extend_to_both";
 
@@ -28,6 +31,9 @@ const EXTEND_TO_BOTH: &str = "iso_extend_to_both";
 pub(crate) fn address(name: &str) -> Option<*const u8> {
     if name == EXTEND {
         return Some(trampoline::extend as *const u8);
+    }
+    if name == EXTEND_BY_ENDS {
+        return Some(trampoline::extend_by_ends as *const u8);
     }
     if name == EXTEND_TO_BOTH {
         return Some(trampoline::extend_to_both as *const u8);
@@ -92,6 +98,13 @@ impl<'a> Calls<'a> {
         let pointer = AbiParam::new(types::I64);
         let operands = vec![AbiParam::new(types::I8).uext(), pointer, pointer];
         self.declare(kernel, EXTEND.to_owned(), operands, Vec::new())
+    }
+
+    /// [`trampoline::extend_by_ends`], to be called from `kernel`.
+    pub(crate) fn extend_by_ends(&mut self, kernel: &mut Function) -> FuncRef {
+        let pointer = AbiParam::new(types::I64);
+        let operands = vec![AbiParam::new(types::I8).uext(), pointer, pointer, pointer];
+        self.declare(kernel, EXTEND_BY_ENDS.to_owned(), operands, Vec::new())
     }
 
     /// [`trampoline::extend_to_both`], to be called from `kernel`.

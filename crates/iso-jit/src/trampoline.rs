@@ -3,7 +3,7 @@
 use std::mem::offset_of;
 
 use cranelift_codegen::ir::{InstBuilder, StackSlot, StackSlotData, StackSlotKind, Type, Value, types};
-use iso_expr::interval::sine_and_cosine_by_ends;
+use iso_expr::interval::{ByEnds, sine_and_cosine_by_ends};
 use iso_expr::{Decorated, Decoration, Interval, Operation};
 
 use crate::elementary;
@@ -31,6 +31,13 @@ impl Pair {
         same(self.lo) && same(self.minus_hi) && self.known[0] == self.known[1]
     }
 
+    /// The lower ends, the upper ends, and all of them again: where a function has nothing else to do, for of other numbers it may take a
+    /// call to know how their values are rounded.
+    fn ends_twice(&self) -> [f64; elementary::WIDTH] {
+        let ([a, b], [c, d]) = (self.lo, self.minus_hi.map(|end| -end));
+        [a, b, c, d, a, b, c, d]
+    }
+
     fn set(&mut self, lane: usize, enclosure: Decorated) {
         self.lo[lane] = enclosure.interval.lo;
         self.minus_hi[lane] = -enclosure.interval.hi;
@@ -56,6 +63,26 @@ pub(crate) unsafe extern "C" fn extend(operation: Operation, operands: *const Pa
     result.set(1, if operands.iter().all(Pair::is_twice_the_same) { first } else { extended(1) });
 }
 
+/// Applies an extension to one operand over each of two boxes. `function` computes the values at all ends at once. Native code calls it.
+///
+/// # Safety
+/// Behind `operand` and `result` there are different places, and `function` is one that [`elementary::function`] gave.
+pub(crate) unsafe extern "C" fn extend_by_ends(
+    by_ends: ByEnds,
+    function: elementary::InPlace,
+    operand: *const Pair,
+    result: *mut Pair,
+) {
+    // SAFETY: both are there, and apart.
+    let (operand, result) = unsafe { (&*operand, &mut *result) };
+    let mut ends = operand.ends_twice();
+    // SAFETY: this processor has the features that the function was compiled for.
+    unsafe { function(&mut ends) };
+    for lane in 0..2 {
+        result.set(lane, by_ends.extension(operand.get(lane), [ends[lane], ends[2 + lane]]));
+    }
+}
+
 /// Applies the extensions of sine and cosine to one operand over each of two boxes, and puts the ends of the results behind it: what
 /// is known of the operand is known of them. `function` computes the values at all ends at once. Native code calls it.
 ///
@@ -64,11 +91,7 @@ pub(crate) unsafe extern "C" fn extend(operation: Operation, operands: *const Pa
 pub(crate) unsafe extern "C" fn extend_to_both(function: elementary::InPlace, pairs: *mut [Pair; 3]) {
     // SAFETY: all three are there.
     let [operand, sine, cosine] = unsafe { &mut *pairs };
-    let mut ends = [0.0; elementary::WIDTH];
-    for lane in 0..2 {
-        let [lo, hi] = [operand.lo[lane], -operand.minus_hi[lane]];
-        [ends[lane], ends[2 + lane], ends[4 + lane], ends[6 + lane]] = [lo, hi, lo, hi];
-    }
+    let mut ends = operand.ends_twice();
     // SAFETY: this processor has the features that the function was compiled for.
     unsafe { function(&mut ends) };
     for lane in 0..2 {
@@ -97,7 +120,7 @@ impl Room {
         Self(writer.builder.create_sized_stack_slot(slot))
     }
 
-    /// Writes a call of [`extend`].
+    /// Writes a call of [`extend`], or of [`extend_by_ends`] if this machine has a function for it.
     pub(crate) fn call(
         &self,
         writer: &mut Writer<'_, '_>,
@@ -110,11 +133,18 @@ impl Room {
             self.store(writer, place, operand);
         }
         let result = MOST_OPERANDS * size_of::<Pair>();
-        let index = writer.builder.ins().iconst(types::I8, operation.index() as i64);
         let operands = writer.builder.ins().stack_addr(types::I64, self.0, 0);
         let address = writer.builder.ins().stack_addr(types::I64, self.0, result as i32);
-        let extend = calls.extend(writer.builder.func);
-        writer.builder.ins().call(extend, &[index, operands, address]);
+        if let Some((by_ends, function)) = ByEnds::of(operation).zip(elementary::function(operation)) {
+            let by_ends = writer.builder.ins().iconst(types::I8, by_ends as i64);
+            let function = writer.builder.ins().iconst(types::I64, function as usize as i64);
+            let extend = calls.extend_by_ends(writer.builder.func);
+            writer.builder.ins().call(extend, &[by_ends, function, operands, address]);
+        } else {
+            let index = writer.builder.ins().iconst(types::I8, operation.index() as i64);
+            let extend = calls.extend(writer.builder.func);
+            writer.builder.ins().call(extend, &[index, operands, address]);
+        }
         let [lo, minus_hi] = [offset_of!(Pair, lo), offset_of!(Pair, minus_hi)]
             .map(|offset| self.load(writer, types::F64, result + offset));
         let known = (range.decoration < Decoration::Common)

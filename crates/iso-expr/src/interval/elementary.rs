@@ -9,9 +9,15 @@ use super::{Decorated, Interval};
 
 /// A rising function that is continuous on all of `a`, or that is limited by the caller's decoration.
 #[inline]
-fn rising(a: Decorated, function: impl Fn(f64) -> f64) -> Decorated {
+pub(super) fn rising(a: Decorated, function: impl Fn(f64) -> f64) -> Decorated {
     let Interval { lo, hi } = a.interval;
-    Decorated::enclosing(Interval { lo: round_down(function(lo)), hi: round_up(function(hi)) }, a.decoration)
+    rising_by_ends(a, [function(lo), function(hi)])
+}
+
+/// The same, given its correctly rounded values at the lower and the upper end.
+#[inline]
+pub(super) fn rising_by_ends(a: Decorated, [lo, hi]: [f64; 2]) -> Decorated {
+    Decorated::enclosing(Interval { lo: round_down(lo), hi: round_up(hi) }, a.decoration)
 }
 
 /// The part of `a` from −1 to 1, of which nothing is known if that is not all of it.
@@ -25,11 +31,18 @@ fn clipped_to_one(a: Decorated) -> Decorated {
 #[inline]
 fn logarithm(a: Decorated, pole: f64, function: impl Fn(f64) -> f64) -> Decorated {
     let Interval { lo, hi } = a.interval;
+    logarithm_by_ends(a, pole, [function(lo), function(hi)])
+}
+
+/// The same, given its correctly rounded values at the lower and the upper end; what it is where it is undefined is not read.
+#[inline]
+pub(super) fn logarithm_by_ends(a: Decorated, pole: f64, [at_lo, at_hi]: [f64; 2]) -> Decorated {
+    let Interval { lo, hi } = a.interval;
     if hi <= pole {
         return Decorated::EMPTY;
     }
-    let interval = Interval { lo: greater(pole, lo), hi };
-    rising(Decorated { interval, ..a }, function).trivial_unless(lo > pole)
+    let at_lo = if lo <= pole { f64::NEG_INFINITY } else { at_lo };
+    rising_by_ends(a, [at_lo, at_hi]).trivial_unless(lo > pole)
 }
 
 #[inline]

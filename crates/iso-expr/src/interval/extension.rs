@@ -1,6 +1,8 @@
 //! Interval extensions of operations, under the names by which the table of operations knows them.
 
 use super::Decorated;
+use super::elementary::{logarithm_by_ends, rising_by_ends};
+use crate::Operation;
 
 pub(crate) use super::angle::atan2;
 pub(crate) use super::arithmetic::{absolute, add, divide, maximum, minimum, multiply, negate, subtract};
@@ -34,6 +36,37 @@ impl Extension {
             Self::Unary(extend) => extend(a),
             Self::Binary(extend) => extend(a, b),
             Self::Ternary(extend) => extend(a, b, c),
+        }
+    }
+}
+
+/// How an extension follows from the operation's correctly rounded values at both ends of its operand, which may be had at less cost
+/// together than one by one.
+#[derive(Clone, Copy, Debug)]
+#[repr(u8)]
+pub enum ByEnds {
+    /// Of a function that rises everywhere.
+    Rising,
+    /// Of a logarithm, which rises from −∞ at zero.
+    Logarithm,
+}
+
+impl ByEnds {
+    /// How the extension of `operation` follows; `None` where no engine asks for it.
+    pub fn of(operation: Operation) -> Option<Self> {
+        match operation {
+            Operation::Exp | Operation::CubeRoot => Some(Self::Rising),
+            Operation::Ln => Some(Self::Logarithm),
+            _ => None,
+        }
+    }
+
+    /// The enclosure over `a`, given the values at its lower and its upper end; those of a logarithm where there are none are not read.
+    #[inline]
+    pub fn extension(self, a: Decorated, values: [f64; 2]) -> Decorated {
+        match self {
+            Self::Rising => rising_by_ends(a, values),
+            Self::Logarithm => logarithm_by_ends(a, 0.0, values),
         }
     }
 }

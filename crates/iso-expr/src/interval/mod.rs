@@ -19,7 +19,7 @@ mod steps;
 mod tests;
 
 pub use decoration::{Decorated, Decoration};
-pub use extension::Extension;
+pub use extension::{ByEnds, Extension};
 pub use periodic::sine_and_cosine_by_ends;
 pub use rounding::{round_down, round_up};
 

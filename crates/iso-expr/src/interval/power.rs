@@ -1,5 +1,6 @@
 //! Powers and roots.
 
+use super::elementary::rising;
 use super::rounding::{greater, lesser, round_down, round_up};
 use super::{Decorated, Decoration, Interval};
 use crate::operation::by_squaring;
@@ -74,9 +75,7 @@ pub(crate) fn square_root(a: Decorated) -> Decorated {
 
 #[inline]
 pub(crate) fn cube_root(a: Decorated) -> Decorated {
-    let Interval { lo, hi } = a.interval;
-    let interval = Interval { lo: round_down(core_math::cbrt(lo)), hi: round_up(core_math::cbrt(hi)) };
-    Decorated::enclosing(interval, a.decoration)
+    rising(a, core_math::cbrt)
 }
 
 /// Rises with the absolute values of both operands.
