@@ -43,6 +43,30 @@ fn what_is_left_of_a_formula_has_the_normals_of_all_of_it() {
     assert!(hits > tile.len() / 4, "{hits} hits");
 }
 
+/// Rays in the plane that cuts a sphere meet it where its margin is zero: there the root of the margin has no derivative.
+#[test]
+fn hits_on_the_edge_of_a_cut_have_the_normals_of_what_is_cut() {
+    let program =
+        Ast::parse("x^2 + y^2 + z^2 = 1 where x <= 0").unwrap().lower(&[]).unwrap().program().simplified();
+    let surface = Surface::new(Arc::new(Interpreter), program);
+    let tracer =
+        Certified::new(&surface, Region::new(DVec3::splat(-1.5), DVec3::splat(1.5)).unwrap()).unwrap();
+    let raster = Raster::Parallel {
+        middle: DVec3::new(0.0, -3.0, 0.0),
+        right: DVec3::new(0.1, 0.0, 0.0),
+        down: DVec3::new(0.0, 0.0, 0.1),
+        direction: DVec3::Y,
+    };
+    let tile = Tile::of(&raster, [0.0, -9.0], 1, 19);
+    let (outcomes, mut found) = traced(&tracer, tile);
+    normals(&surface, Some(&tracer), &mut Workspace::default(), tile, &outcomes, &mut found).unwrap();
+    for (row, normal) in (-9..).zip(found) {
+        let z = 0.1 * f64::from(row);
+        let expected = DVec3::new(0.0, -(1.0 - z * z).sqrt(), z);
+        assert!(normal.distance(expected) < 1e-9, "{normal} instead of {expected}");
+    }
+}
+
 /// Where a tracer says that rays of a tile meet the surface, and the normals that it comes by on the way.
 fn traced(tracer: &Certified, tile: Tile<'_>) -> (Vec<Outcome>, Vec<DVec3>) {
     let mut outcomes = vec![Outcome::Miss; tile.len()];
