@@ -87,8 +87,11 @@ pub(super) fn argument_count(
     if name == "log" && given == 1 {
         return bare_logarithm(span);
     }
-    let pattern =
-        if matches!(name, "atan" | "arctan") && given == 2 { "atan2(y, x)".to_owned() } else { pattern };
+    let pattern = match (name, given) {
+        ("atan" | "arctan", 2) => "atan2(y, x)".to_owned(),
+        ("hypot", 3) => "hypot(hypot(a, b), c)".to_owned(),
+        _ => pattern,
+    };
     let kind =
         FormulaErrorKind::ArgumentCount { function: shortened(name), given, expected: expected.shown() };
     FormulaError::new(kind, span).with_help(format!("it is called as `{}`", shortened(&pattern)))
@@ -205,7 +208,9 @@ pub(super) fn misplaced_definition(item: &Item<'_>) -> FormulaError {
 pub(super) fn equation_inside(item: &Item<'_>, in_brackets: bool) -> FormulaError {
     let help = match in_brackets {
         true => "write `==` to compare",
-        false => "write `==` to compare; the equation is a statement after the definitions",
+        false => {
+            "write `==` to compare; `;` or a new line ends a definition, and the equation comes after it"
+        }
     };
     FormulaError::new(FormulaErrorKind::EquationInside, item.span()).with_help(help)
 }

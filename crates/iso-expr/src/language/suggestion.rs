@@ -70,12 +70,13 @@ fn functions_first(name: &str, is_called: bool, values: &[&str], functions: &[&s
     })
 }
 
-/// The known name that the fewest slips turn into `name`, if they are few for its length.
+/// The known name of several letters that the fewest slips turn into `name`, if they are few for its length.
 pub(super) fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
     let length = name.chars().count();
-    let allowed = if length <= 1 || length > LONGEST_NAME { 0 } else { length.div_ceil(3).min(3) };
+    let allowed = if length <= 1 || length > LONGEST_NAME { 0 } else { (length / 3).clamp(1, 3) };
+    let lengths = 2.max(length - allowed.min(length))..=length + allowed;
     known
-        .filter(|other| other.chars().count().abs_diff(length) <= allowed)
+        .filter(|other| lengths.contains(&other.chars().count()))
         .map(|other| (slips(name, other), other))
         .filter(|&(slips, _)| slips <= allowed)
         .min()
