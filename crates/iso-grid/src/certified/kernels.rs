@@ -1,6 +1,6 @@
 //! The kernels that proofs are made of.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 use iso_expr::engine::{Boxes, Enclosures};
@@ -29,6 +29,8 @@ pub(super) struct Kernels {
     formula: Arc<Formula>,
     /// Where they hold.
     domain: Bounds,
+    /// Those of the functions that F is made of wherever these hold, found when first asked for.
+    composition: OnceLock<Option<Composition<Arc<Self>>>>,
 }
 
 /// F over a box, and its derivatives along the axes.
@@ -43,13 +45,17 @@ pub(super) const NOTHING_KNOWN: Decorated =
     Decorated { interval: Interval::ENTIRE, decoration: Decoration::Trivial };
 
 impl Kernels {
+    fn on(domain: Bounds, formula: Arc<Formula>) -> Self {
+        Self { formula, domain, composition: OnceLock::new() }
+    }
+
     /// Kernels that hold everywhere: native code, unless they are [left to places](Kernel::are_left_to_places).
     ///
     /// # Errors
     /// When the engine cannot compile one.
     pub(super) fn of(surface: &Surface) -> Result<Self, CompileError> {
         let formula = Formula::everywhere(surface)?;
-        Ok(Self { formula: Arc::new(formula), domain: [Interval::ENTIRE; 3] })
+        Ok(Self::on([Interval::ENTIRE; 3], Arc::new(formula)))
     }
 
     /// Shorter ones that hold on `domain`, as far as these do; `None` where there are none. They are made for few runs, and compiled when they are
@@ -57,18 +63,21 @@ impl Kernels {
     pub(super) fn shortened(&self, formulas: &Formulas, domain: Bounds) -> Option<Self> {
         let domain = [0, 1, 2].map(|axis| domain[axis].intersection(self.domain[axis]));
         let program = self.program().shortened(domain)?;
-        Some(Self { formula: formulas.one_of(program, &self.formula), domain })
+        Some(Self::on(domain, formulas.one_of(program, &self.formula)))
     }
 
     /// Kernels of the functions that F is made of wherever these hold, if it has kinks there.
-    pub(super) fn composition(&self, formulas: &Formulas) -> Option<Composition<Self>> {
-        let composition = self.formula.composition(formulas)?.clone();
-        Some(composition.map(|formula| Self { formula, domain: self.domain }))
+    pub(super) fn composition(&self, formulas: &Formulas) -> Option<&Composition<Arc<Self>>> {
+        let find = || {
+            let composition = self.formula.composition(formulas)?.as_ref();
+            Some(composition.map(|formula| Arc::new(Self::on(self.domain, Arc::clone(formula)))))
+        };
+        self.composition.get_or_init(find).as_ref()
     }
 
     /// Kernels of the same function that hold on a box, or along some rays in it that ask for nothing beyond.
     pub(super) fn within(&self, domain: Bounds) -> Self {
-        Self { formula: Arc::clone(&self.formula), domain }
+        Self::on(domain, Arc::clone(&self.formula))
     }
 
     /// Whether these are others of the same function. Threads may find out the same.

@@ -82,7 +82,7 @@ impl Places {
     }
 
     /// Kernels of the functions that F is made of wherever some kernels hold, if it has kinks there.
-    pub(super) fn composition(&self, kernels: &Kernels) -> Option<Composition<Kernels>> {
+    pub(super) fn composition<'a>(&self, kernels: &'a Kernels) -> Option<&'a Composition<Arc<Kernels>>> {
         kernels.composition(&self.formulas)
     }
 

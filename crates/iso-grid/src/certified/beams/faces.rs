@@ -150,13 +150,13 @@ impl Subdivision<'_> {
         if let Known::Everywhere(known) | Known::OnSlab(known) = &self.faces[kernels as usize] {
             return known.clone();
         }
-        let asked = self.kernels(kernels);
+        let asked = Arc::clone(self.kernels(kernels));
         let is_made = asked.may_be_shortened() || asked.are_cut();
-        let found = is_made.then(|| self.certified.places.composition(asked)).flatten();
+        let found = is_made.then(|| self.certified.places.composition(&asked)).flatten();
         // What simplifying cuts anew is followed as it is: there may be thousands of such cuts inside each other.
         let found = found
             .filter(|faces| !matches!(faces, Composition::Within { function, .. } if function.are_cut()));
-        let found = found.map(|faces| Rc::new(faces.map(|face| self.number_of(Arc::new(face)))));
+        let found = found.map(|faces| Rc::new(faces.as_ref().map(|face| self.number_of(Arc::clone(face)))));
         self.faces[kernels as usize] = Known::Everywhere(found.clone());
         found
     }
