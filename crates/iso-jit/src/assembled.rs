@@ -15,8 +15,8 @@ use crate::enclosures;
 use crate::engine::NAME;
 use crate::pieces::{Apply, KNOWN, Kind, LO, MINUS_HI, Piece, Pieces, SIZE};
 
-/// The most nodes of a program: for more, places would not fit into half of 32 bits.
-const LARGEST: usize = Place::CONSTANT as usize / SIZE;
+/// The most nodes of a program: for more, places would not fit into 32 bits.
+const LARGEST: usize = u32::MAX as usize / SIZE;
 
 /// The engine for kernels that are not worth compiling. Those over points are interpreted.
 #[derive(Clone)]
@@ -49,21 +49,14 @@ impl Engine for Assembler {
     }
 }
 
-/// Where the enclosures of a value stand: among those that a run computes, or among the constants.
+/// Where the enclosures of a value stand, in doubles from the beginning: first the constants, then the arguments, then the results of all
+/// steps in their order.
 #[derive(Clone, Copy, Debug)]
 struct Place(u32);
 
 impl Place {
-    /// Marks constants.
-    const CONSTANT: u32 = 1 << 31;
-
-    /// So many doubles from the beginning.
     fn start(self) -> usize {
-        (self.0 & !Self::CONSTANT) as usize
-    }
-
-    fn is_constant(self) -> bool {
-        self.0 & Self::CONSTANT != 0
+        self.0 as usize
     }
 }
 
@@ -71,8 +64,6 @@ impl Place {
 struct Step {
     apply: Apply,
     operation: Operation,
-    /// Behind all that it reads.
-    result: Place,
     operands: [Place; 3],
 }
 
@@ -81,11 +72,9 @@ pub(crate) struct Assembled {
     steps: Vec<Step>,
     /// The enclosures of all constants.
     constants: Vec<f64>,
-    /// The axis of each argument, and where its enclosures stand.
-    arguments: Vec<(usize, Place)>,
+    /// The axis of each argument.
+    arguments: Vec<usize>,
     outputs: Vec<(Place, Kind)>,
-    /// How many doubles a run computes.
-    length: usize,
     /// Keeps the functions of all steps.
     _pieces: Arc<Pieces>,
 }
@@ -108,67 +97,76 @@ impl Assembled {
             _ => None,
         });
         let mut functions = pieces.functions(wanted)?.into_iter();
+        let nodes = || program.nodes().iter().zip(&ranges);
+        let constant =
+            |(node, range): (&Node, &Decorated)| matches!(node, Node::Constant(_)).then(|| in_memory(*range));
+        let constants: Vec<f64> = nodes().filter_map(constant).flatten().collect();
+        let argument = |(node, _): (&Node, _)| match node {
+            Node::Variable(argument) => Some(argument.index()),
+            _ => None,
+        };
+        let arguments: Vec<usize> = nodes().filter_map(argument).collect();
+        let first_result = constants.len() + SIZE * arguments.len();
+        // The next place of a constant, an argument and a result.
+        let mut free =
+            [0, constants.len(), first_result].map(|start| (start as u32..).step_by(SIZE).map(Place));
         let mut steps = Vec::with_capacity(program.operations());
-        let (mut constants, mut arguments, mut computed) = (Vec::new(), Vec::new(), 0u32);
         let mut places: Vec<Place> = Vec::with_capacity(program.nodes().len());
-        for (node, range) in program.nodes().iter().zip(&ranges) {
+        for node in program.nodes() {
+            let [free_for_constants, free_for_arguments, free_for_results] = &mut free;
             let place = match node {
-                Node::Constant(_) => Place(constants.len() as u32 | Place::CONSTANT),
-                _ => Place(computed),
-            };
-            match node {
-                Node::Constant(_) => constants.extend(in_memory(*range)),
-                Node::Variable(argument) => arguments.push((argument.index(), place)),
+                Node::Constant(_) => free_for_constants.next(),
+                Node::Variable(_) => free_for_arguments.next(),
                 Node::Apply(operation, operands) => {
                     let apply = functions.next().expect("a function for each operation");
                     let operands = operands.map(|operand| places[operand.index()]);
-                    steps.push(Step { apply, operation: *operation, result: place, operands });
+                    steps.push(Step { apply, operation: *operation, operands });
+                    free_for_results.next()
                 }
-            }
-            if !place.is_constant() {
-                computed += SIZE as u32;
-            }
-            places.push(place);
+            };
+            places.push(place.expect("places fit into 32 bits"));
         }
         let output = |id: &NodeId| (places[id.index()], Kind::of(ranges[id.index()]));
         let outputs = program.outputs().iter().map(output).collect();
-        let length = computed as usize;
-        Ok(Self { steps, constants, arguments, outputs, length, _pieces: Arc::clone(pieces) })
+        Ok(Self { steps, constants, arguments, outputs, _pieces: Arc::clone(pieces) })
     }
 
-    /// Computes all values over two boxes inside the domain, the arguments of which stand where they belong.
-    fn run(&self, computed: &mut [f64]) {
-        assert_eq!(computed.len(), self.length, "room for every value");
-        let start = computed.as_mut_ptr();
-        let constants = self.constants.as_ptr();
-        for Step { apply, result, operands, .. } in &self.steps {
-            // SAFETY: places are inside what they are counted in, of which no count overflowed, and the pieces live as long as the kernel. A result stands
-            // behind the operands, so that a piece reads nothing that it writes.
+    /// Where the results begin.
+    fn first_result(&self) -> usize {
+        self.constants.len() + SIZE * self.arguments.len()
+    }
+
+    /// How many doubles a run takes.
+    fn length(&self) -> usize {
+        self.first_result() + SIZE * self.steps.len()
+    }
+
+    /// Computes all values over two boxes inside the domain, where constants and arguments stand in their places.
+    fn run(&self, values: &mut [f64]) {
+        assert_eq!(values.len(), self.length(), "room for every value");
+        let start = values.as_mut_ptr();
+        for (Step { apply, operands, .. }, result) in
+            self.steps.iter().zip((self.first_result()..).step_by(SIZE))
+        {
+            // SAFETY: all places are inside the values, and the pieces live as long as the kernel. A result stands behind the operands, so that a
+            // piece reads nothing that it writes.
             unsafe {
-                let [a, b, c] = operands.map(|place| {
-                    let first = if place.is_constant() { constants } else { start.cast_const() };
-                    first.add(place.start())
-                });
-                apply(start.add(result.start()), a, b, c);
+                let [a, b, c] = operands.map(|place| start.cast_const().add(place.start()));
+                apply(start.add(result), a, b, c);
             }
         }
     }
 
     /// The same over any boxes, empty, unbounded and huge ones included, for which the pieces were not chosen.
-    fn run_anywhere(&self, computed: &mut [f64]) {
-        for Step { operation, result, operands, .. } in &self.steps {
+    fn run_anywhere(&self, values: &mut [f64]) {
+        for (Step { operation, operands, .. }, result) in
+            self.steps.iter().zip((self.first_result()..).step_by(SIZE))
+        {
             for lane in 0..PAIR {
-                let operands = operands.map(|place| decorated(self.parts(computed, place), lane));
-                let enclosure = operation.extension().of(operands);
-                put(&mut computed[result.start()..][..SIZE], lane, enclosure);
+                let operands = operands.map(|place| decorated(&values[place.start()..], lane));
+                put(&mut values[result..], lane, operation.extension().of(operands));
             }
         }
-    }
-
-    /// The enclosures of a value.
-    fn parts<'a>(&'a self, computed: &'a [f64], place: Place) -> &'a [f64] {
-        let all = if place.is_constant() { &self.constants } else { computed };
-        &all[place.start()..][..SIZE]
     }
 }
 
@@ -202,29 +200,36 @@ impl BoxKernel for Assembled {
             "room for every output over every box"
         );
         let is_inside = Domain::holds_all(Domain::NEAR, boxes);
-        let computed = scratch.values(self.length);
+        let values = scratch.values(self.length());
+        values[..self.constants.len()].copy_from_slice(&self.constants);
         for first in (0..count).step_by(PAIR) {
             // The last box of an odd number stands in both lanes.
             let lanes = [first, (first + 1).min(count - 1)];
-            for &(axis, place) in &self.arguments {
+            let places = values[self.constants.len()..].chunks_exact_mut(SIZE);
+            for (axis, parts) in self.arguments.iter().zip(places) {
                 for (lane, number) in lanes.into_iter().enumerate() {
-                    let argument = Decorated::argument(boxes.lo[axis][number], boxes.hi[axis][number]);
-                    put(&mut computed[place.start()..][..SIZE], lane, argument);
+                    let (lo, hi) = (boxes.lo[*axis][number], boxes.hi[*axis][number]);
+                    if is_inside {
+                        // The same argument; pieces know that it is common, and do not read so.
+                        (parts[LO + lane], parts[MINUS_HI + lane]) = (lo + 0.0, 0.0 - hi);
+                    } else {
+                        put(parts, lane, Decorated::argument(lo, hi));
+                    }
                 }
             }
             if is_inside {
-                self.run(computed);
+                self.run(values);
             } else {
-                self.run_anywhere(computed);
+                self.run_anywhere(values);
             }
             for (output, (place, kind)) in self.outputs.iter().enumerate() {
-                let parts = self.parts(computed, *place);
+                let parts = &values[place.start()..];
                 let is_common = is_inside && kind.is_common;
                 for (lane, number) in lanes.into_iter().enumerate() {
-                    let enclosure = decorated(parts, lane);
                     let place = output * count + number;
-                    (lo[place], hi[place]) = (enclosure.interval.lo, enclosure.interval.hi);
-                    decoration[place] = if is_common { Decoration::Common } else { enclosure.decoration };
+                    (lo[place], hi[place]) = (parts[LO + lane], -parts[MINUS_HI + lane]);
+                    decoration[place] =
+                        if is_common { Decoration::Common } else { decorated(parts, lane).decoration };
                 }
             }
         }
