@@ -111,10 +111,6 @@ impl Chain<'_> {
         matches!(self.program.node(id), Node::Constant(_))
     }
 
-    fn is_zero(&self, id: NodeId) -> bool {
-        matches!(self.program.node(id), Node::Constant(constant) if constant.is_exact() && constant.value() == 0.0)
-    }
-
     /// b where `condition` holds, else c, either of which may be zero.
     fn choice(&mut self, condition: NodeId, b: Option<NodeId>, c: Option<NodeId>) -> Option<NodeId> {
         if b.is_none() && c.is_none() {
@@ -135,12 +131,12 @@ pub(super) fn subtract(chain: &mut Chain<'_>) -> Option<NodeId> {
     chain.difference(a, b)
 }
 
-/// a·b′ + a′·b. Zero times anything changes as little as it is worth: it is its own derivative, which is there on the edge of a cut, too,
-/// where the root in 0·√m has none.
+/// a·b′ + a′·b. The 0·√m that cuts a function where m is negative is its own derivative: it is there where m is zero, where the root has
+/// none.
 pub(super) fn multiply(chain: &mut Chain<'_>) -> Option<NodeId> {
     let ([a, b, _], [da, db, _]) = (chain.operands, chain.derivatives);
-    if [a, b].iter().any(|factor| chain.is_zero(*factor)) && (da.is_some() || db.is_some()) {
-        return Some(chain.result);
+    if chain.program.margin_of(chain.result).is_some() {
+        return da.or(db).map(|_| chain.result);
     }
     let (left, right) = (chain.product(b, da), chain.product(a, db));
     chain.sum(left, right)

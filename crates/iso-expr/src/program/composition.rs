@@ -114,7 +114,7 @@ impl Program {
     }
 
     /// The m of 0·√m.
-    fn margin_of(&self, id: NodeId) -> Option<NodeId> {
+    pub(crate) fn margin_of(&self, id: NodeId) -> Option<NodeId> {
         let Node::Apply(Operation::Multiply, [a, b, _]) = self.node(id) else { return None };
         match (self.node(a), self.node(b)) {
             (Node::Constant(factor), Node::Apply(Operation::SquareRoot, [margin, ..]))
