@@ -74,7 +74,7 @@ fn functions_first(name: &str, is_called: bool, values: &[&str], functions: &[&s
 pub(super) fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
     let length = name.chars().count();
     let allowed = if length <= 1 || length > LONGEST_NAME { 0 } else { (length / 3).clamp(1, 3) };
-    let lengths = 2.max(length - allowed.min(length))..=length + allowed;
+    let lengths = (length - allowed).max(2)..=length + allowed;
     known
         .filter(|other| lengths.contains(&other.chars().count()))
         .map(|other| (slips(name, other), other))
