@@ -106,29 +106,32 @@ impl Assembled {
             _ => None,
         };
         let arguments: Vec<usize> = nodes().filter_map(argument).collect();
-        let first_result = constants.len() + SIZE * arguments.len();
+        let steps = Vec::with_capacity(program.operations());
+        let mut kernel =
+            Self { steps, constants, arguments, outputs: Vec::new(), _pieces: Arc::clone(pieces) };
         // The next place of a constant, an argument and a result.
-        let mut free =
-            [0, constants.len(), first_result].map(|start| (start as u32..).step_by(SIZE).map(Place));
-        let mut steps = Vec::with_capacity(program.operations());
+        let mut free = [0, kernel.constants.len(), kernel.first_result()];
+        let mut next = |kind: usize| {
+            let place = Place(free[kind] as u32);
+            free[kind] += SIZE;
+            place
+        };
         let mut places: Vec<Place> = Vec::with_capacity(program.nodes().len());
         for node in program.nodes() {
-            let [free_for_constants, free_for_arguments, free_for_results] = &mut free;
-            let place = match node {
-                Node::Constant(_) => free_for_constants.next(),
-                Node::Variable(_) => free_for_arguments.next(),
+            places.push(match node {
+                Node::Constant(_) => next(0),
+                Node::Variable(_) => next(1),
                 Node::Apply(operation, operands) => {
                     let apply = functions.next().expect("a function for each operation");
                     let operands = operands.map(|operand| places[operand.index()]);
-                    steps.push(Step { apply, operation: *operation, operands });
-                    free_for_results.next()
+                    kernel.steps.push(Step { apply, operation: *operation, operands });
+                    next(2)
                 }
-            };
-            places.push(place.expect("places fit into 32 bits"));
+            });
         }
         let output = |id: &NodeId| (places[id.index()], Kind::of(ranges[id.index()]));
-        let outputs = program.outputs().iter().map(output).collect();
-        Ok(Self { steps, constants, arguments, outputs, _pieces: Arc::clone(pieces) })
+        kernel.outputs = program.outputs().iter().map(output).collect();
+        Ok(kernel)
     }
 
     /// Where the results begin.
@@ -141,13 +144,16 @@ impl Assembled {
         self.first_result() + SIZE * self.steps.len()
     }
 
+    /// Each step, and where its result stands.
+    fn steps(&self) -> impl Iterator<Item = (&Step, usize)> {
+        self.steps.iter().zip((self.first_result()..).step_by(SIZE))
+    }
+
     /// Computes all values over two boxes inside the domain, where constants and arguments stand in their places.
     fn run(&self, values: &mut [f64]) {
         assert_eq!(values.len(), self.length(), "room for every value");
         let start = values.as_mut_ptr();
-        for (Step { apply, operands, .. }, result) in
-            self.steps.iter().zip((self.first_result()..).step_by(SIZE))
-        {
+        for (Step { apply, operands, .. }, result) in self.steps() {
             // SAFETY: all places are inside the values, and the pieces live as long as the kernel. A result stands behind the operands, so that a
             // piece reads nothing that it writes.
             unsafe {
@@ -159,9 +165,7 @@ impl Assembled {
 
     /// The same over any boxes, empty, unbounded and huge ones included, for which the pieces were not chosen.
     fn run_anywhere(&self, values: &mut [f64]) {
-        for (Step { operation, operands, .. }, result) in
-            self.steps.iter().zip((self.first_result()..).step_by(SIZE))
-        {
+        for (Step { operation, operands, .. }, result) in self.steps() {
             for lane in 0..PAIR {
                 let operands = operands.map(|place| decorated(&values[place.start()..], lane));
                 put(&mut values[result..], lane, operation.extension().of(operands));
@@ -210,7 +214,7 @@ impl BoxKernel for Assembled {
                 for (lane, number) in lanes.into_iter().enumerate() {
                     let (lo, hi) = (boxes.lo[*axis][number], boxes.hi[*axis][number]);
                     if is_inside {
-                        // The same argument; pieces know that it is common, and do not read so.
+                        // The same enclosure, without saying that it is common: pieces that take it know.
                         (parts[LO + lane], parts[MINUS_HI + lane]) = (lo + 0.0, 0.0 - hi);
                     } else {
                         put(parts, lane, Decorated::argument(lo, hi));

@@ -31,8 +31,8 @@ impl Pair {
         same(self.lo) && same(self.minus_hi) && self.known[0] == self.known[1]
     }
 
-    /// The lower ends, the upper ends, and all of them again: where a function has nothing else to do, for of other numbers it may take a
-    /// call to know how their values are rounded.
+    /// The lower ends, the upper ends, and both again, to fill the lanes of a function with numbers of which it gives the values anyway: of
+    /// others it might have to call the scalar function.
     fn ends_twice(&self) -> [f64; elementary::WIDTH] {
         let ([a, b], [c, d]) = (self.lo, self.minus_hi.map(|end| -end));
         [a, b, c, d, a, b, c, d]

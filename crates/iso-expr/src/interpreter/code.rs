@@ -21,7 +21,7 @@ pub(super) struct Code {
     /// How many arguments there are: x, y and z, if not more.
     pub(super) arguments: usize,
     pub(super) instructions: Vec<Instruction>,
-    pub(super) constants: Vec<Constant>,
+    constants: Vec<Constant>,
     /// How many slots there are.
     pub(super) slots: usize,
     pub(super) outputs: Vec<Slot>,

@@ -8,13 +8,11 @@ use crate::engine::{PointKernel, Scratch};
 #[derive(Debug)]
 pub(super) struct Point {
     code: Code,
-    constants: Vec<f64>,
 }
 
 impl Point {
     pub(super) fn new(code: Code) -> Self {
-        let constants = code.constants.iter().map(|constant| constant.value()).collect();
-        Self { code, constants }
+        Self { code }
     }
 }
 
@@ -22,9 +20,10 @@ impl PointKernel for Point {
     fn evaluate(&self, scratch: &mut Scratch, x: f64, y: f64, z: f64, values: &mut [f64]) {
         assert_eq!(values.len(), self.code.outputs.len(), "one value for each output");
         let slots = scratch.values(self.code.slots);
-        let (arguments, others) = slots.split_at_mut(self.code.arguments);
-        arguments.copy_from_slice(&[x, y, z]);
-        others[..self.constants.len()].copy_from_slice(&self.constants);
+        slots[..self.code.arguments].copy_from_slice(&[x, y, z]);
+        for (slot, constant) in self.code.constants() {
+            slots[slot as usize] = constant.value();
+        }
         for instruction in &self.code.instructions {
             let result = visit(instruction.operation, Operands { slots, places: instruction.operands });
             slots[instruction.target as usize] = result;
