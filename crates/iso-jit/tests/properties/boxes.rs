@@ -6,14 +6,17 @@ use iso_expr::random::Random;
 use iso_expr::{BoxKernel, Decorated, Decoration, Engine, Interpreter, Program, Scratch};
 use iso_jit::Jit;
 
-/// The enclosures of so many outputs over all boxes, as bits, any NaN counting as one.
+/// The enclosures of so many outputs over all boxes, as bits, any NaN counting as one. Zeros at the ends of every other box have the sign that
+/// no enclosure gives them: kernels take any.
 fn enclosures(
     kernel: &dyn BoxKernel,
     outputs: usize,
     boxes: &[[Decorated; 3]],
 ) -> Vec<(u64, u64, Decoration)> {
     let ends = |end: fn(&Decorated) -> f64| {
-        [0, 1, 2].map(|axis| boxes.iter().map(|ranges| end(&ranges[axis])).collect::<Vec<_>>())
+        let turned = |(number, end): (usize, f64)| if end == 0.0 && number % 2 == 0 { -end } else { end };
+        let along = |axis: usize| boxes.iter().map(move |ranges| end(&ranges[axis])).enumerate();
+        [0, 1, 2].map(|axis| along(axis).map(turned).collect::<Vec<_>>())
     };
     let (lo, hi) = (ends(|range| range.interval.lo), ends(|range| range.interval.hi));
     let count = outputs * boxes.len();
