@@ -160,7 +160,7 @@ impl Subdivision<'_> {
     pub(super) fn error_of_values(&mut self, part: &Part, kernels: u32) -> Option<f64> {
         let reach = part.form.reach;
         let bounds = self.beam(part.beam).bounds(reach, &self.certified.region)?;
-        let rounding = self.rounding_around(kernels, bounds).or_else(|| self.rounding(kernels, bounds))?;
+        let rounding = self.rounding((part.beam, kernels), bounds, |_, _| true)?;
         Some(rounding.error(self.beam(part.beam), reach))
     }
 

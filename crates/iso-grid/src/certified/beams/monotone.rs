@@ -185,15 +185,13 @@ impl Subdivision<'_> {
         let bounds = self.beam(part.beam).bounds(form.reach, &self.certified.region)?;
         let sight =
             |rounding: &Rounding, beam: &Beam| Sight::new(form, tolerance, rounding.error(beam, form.reach));
-        // A bound on a larger box will do as long as it is little beside what is wanted.
-        let known = self.rounding_around(part.kernels, bounds);
-        let rough = known.and_then(|known| sight(&known, self.beam(part.beam)));
-        if rough.as_ref().is_some_and(|sight| SHARP * sight.blur < tolerance) {
-            return rough;
-        }
-        let exact = self.rounding(part.kernels, bounds)?;
-        // If not, less of the stretch is looked at along a single ray where its root is, and rounding may be less there.
-        sight(&exact, self.beam(part.beam))
+        // A bound on a larger box will do as long as it is little beside what is wanted. If none is, less of the stretch is looked at along a
+        // single ray where its root is, and rounding may be less there.
+        let is_little = |rounding: &Rounding, beam: &Beam| {
+            sight(rounding, beam).is_some_and(|sight| SHARP * sight.blur < tolerance)
+        };
+        let rounding = self.rounding((part.beam, part.kernels), bounds, is_little)?;
+        sight(&rounding, self.beam(part.beam))
     }
 
     /// Where a ray may have its root inside the region, and where the part's certificate holds there. `None` when it has none, or was

@@ -9,11 +9,14 @@ use super::form::ROUNDING;
 use super::subdivision::Subdivision;
 use crate::{Kernel, Span};
 
-/// How many times its size a box for which rounding is bounded grows at each side, so that it holds neighbours too.
-const AROUND: f64 = 1.5;
+/// How many times its size a box for which rounding is bounded grows at each side at most, so that it holds neighbours too.
+pub(super) const AROUND: f64 = 3.0;
+
+/// How many times as much it grows after a larger box did, and less after one that did not.
+const GROWTH: f64 = 1.25;
 
 /// So many of the last boxes are remembered: rays come back to places in front of and behind others.
-const KEPT: usize = 8;
+const KEPT: usize = 16;
 
 /// What rounding does to F on a box.
 #[derive(Clone, Copy, Debug)]
@@ -42,17 +45,29 @@ impl Rounding {
 }
 
 impl Subdivision<'_> {
-    /// What rounding does to F on a box and around it, if that is bounded: neighbouring parts share it.
-    pub(super) fn rounding_around(&mut self, kernels: u32, (lo, hi): (DVec3, DVec3)) -> Option<Rounding> {
+    /// What rounding does to F on a box, if that is bounded: by a bound on a larger box that neighbours share, if there is one that
+    /// will do for this beam, or by one of its own.
+    pub(super) fn rounding(
+        &mut self,
+        (beam, kernels): (u32, u32),
+        (lo, hi): (DVec3, DVec3),
+        will_do: impl Fn(&Rounding, &Beam) -> bool,
+    ) -> Option<Rounding> {
         let function = self.kernels(kernels).identity();
-        let known = &self.memory.roundings;
-        if let Some(known) = known.iter().rev().find(|known| known.covers(function, lo, hi)) {
+        let is_known = |known: &&Rounding| known.covers(function, lo, hi) && will_do(known, self.beam(beam));
+        if let Some(known) = self.memory.roundings.iter().rev().find(is_known) {
             return Some(*known);
         }
         // It holds for the function wherever that is anything to F.
-        let (region, room) = (&self.certified.region, AROUND * (hi - lo));
-        let around = [(lo - room).max(region.min()), (hi + room).min(region.max())];
-        let found = self.rounding(kernels, (around[0].min(lo), around[1].max(hi)))?;
+        let (region, room) = (&self.certified.region, self.memory.room * (hi - lo));
+        let around = ((lo - room).max(region.min()).min(lo), (hi + room).min(region.max()).max(hi));
+        let [around, own] = self.roundings(kernels, [around, (lo, hi)])?;
+        let around = around.filter(|around| will_do(around, self.beam(beam)));
+        self.memory.room = match around {
+            Some(_) => AROUND.min(GROWTH * self.memory.room),
+            None => self.memory.room / GROWTH,
+        };
+        let found = around.or(own)?;
         let known = &mut self.memory.roundings;
         if known.len() == KEPT {
             known.remove(0);
@@ -61,20 +76,24 @@ impl Subdivision<'_> {
         Some(found)
     }
 
-    /// What rounding does to F on a box.
-    pub(super) fn rounding(&mut self, kernels: u32, (lo, hi): (DVec3, DVec3)) -> Option<Rounding> {
-        let sides = outwards(lo, hi);
-        let corners = [sides.map(|side| side.lo), sides.map(|side| side.hi)].map(DVec3::from_array);
-        let [value, bounds @ ..]: [Decorated; 5] =
-            self.enclose_one(kernels, Kernel::RoundingBounds, (corners[0], corners[1]))?;
-        let is_known = value.decoration == Decoration::Common
-            && bounds.iter().all(|bound| bound.decoration >= Decoration::Defined);
-        let [of_values, gradient @ ..] = bounds.map(|bound| bound.interval.magnitude());
-        let gradient = DVec3::from_array(gradient);
+    /// What rounding does to F on two boxes, which take no longer than one.
+    fn roundings(&mut self, kernels: u32, corners: [(DVec3, DVec3); 2]) -> Option<[Option<Rounding>; 2]> {
         let function = self.kernels(kernels).identity();
-        let found = Rounding { function, lo, hi, of_values, gradient };
-        let is_bounded = is_known && found.of_values.is_finite() && gradient.is_finite();
-        is_bounded.then_some(found)
+        let bounds = corners.map(|(lo, hi)| {
+            let sides = outwards(lo, hi);
+            (DVec3::from_array(sides.map(|side| side.lo)), DVec3::from_array(sides.map(|side| side.hi)))
+        });
+        let found: [[Decorated; 5]; 2] = self.enclose_all(kernels, Kernel::RoundingBounds, bounds)?;
+        let rounding = |place: usize| {
+            let ((lo, hi), [value, bounds @ ..]) = (corners[place], found[place]);
+            let is_known = value.decoration == Decoration::Common
+                && bounds.iter().all(|bound| bound.decoration >= Decoration::Defined);
+            let [of_values, gradient @ ..] = bounds.map(|bound| bound.interval.magnitude());
+            let gradient = DVec3::from_array(gradient);
+            let is_bounded = is_known && of_values.is_finite() && gradient.is_finite();
+            is_bounded.then_some(Rounding { function, lo, hi, of_values, gradient })
+        };
+        Some([0, 1].map(rounding))
     }
 }
 

@@ -14,7 +14,7 @@ use super::made::MOST;
 use super::met::Met;
 use super::packet::Packet;
 use super::pixels::Pixels;
-use super::rounding::Rounding;
+use super::rounding::{AROUND, Rounding};
 use super::sheaf::Sheaf;
 use super::slabs::{LEAST_OVERLAP, Slab};
 use crate::area::Area;
@@ -91,6 +91,8 @@ pub(crate) struct Memory {
     pub(super) met: Met,
     /// What was found out of rounding, the last at the end.
     pub(super) roundings: Vec<Rounding>,
+    /// How many times its size a box for which rounding is bounded grows at each side, so that it holds neighbours too.
+    pub(super) room: f64,
 }
 
 /// The subdivision of a tile.
@@ -142,6 +144,7 @@ impl<'a> Subdivision<'a> {
         memory.beams.push(beam);
         memory.met.clear();
         memory.roundings.clear();
+        memory.room = AROUND;
         memory.attempts = Attempts::default();
         memory.open.clear();
         memory.open.resize(tile.len(), true);
