@@ -16,30 +16,19 @@ impl Line<'_> {
         let mut root = stretch;
         for _ in 0..STEPS {
             let width = root.end - root.start;
-            let slope = self.course(root).slope.interval;
-            root = self.newton_step(root, slope);
+            let middle = middle_of(root);
+            // Two boxes take no longer than one.
+            let [over_all, at_middle, ..] = self.courses(&[root, Span { start: middle, end: middle }]);
+            let slope = over_all.slope.interval;
+            root = newton_step(root, (middle, at_middle.value.interval), slope);
             let stalled = root.end - root.start > 0.75 * width;
             if stalled || root.end - root.start <= tolerance {
                 // The slope of a narrow stretch is all but a number: one more value gives all the digits there are.
-                return self.newton_step(root, slope);
+                let middle = middle_of(root);
+                return newton_step(root, (middle, self.value_at(middle)), slope);
             }
         }
         root
-    }
-
-    /// The part of `root` that may hold the zero of F, which is monotone there with a derivative in `slope`.
-    fn newton_step(&mut self, root: Span, slope: Interval) -> Span {
-        let middle = root.start + 0.5 * (root.end - root.start);
-        let value = self.value_at(middle);
-        let Some(direction) = side(slope) else { return root };
-        let newton = Interval::point(middle).minus(value.over(slope));
-        let mut next = Span { start: root.start.max(newton.lo), end: root.end.min(newton.hi) };
-        match side(value) {
-            Some(height) if height == direction => next.end = next.end.min(middle),
-            Some(_) => next.start = next.start.max(middle),
-            None => {}
-        }
-        if next.start <= next.end { next } else { root }
     }
 
     /// A point of `stretch` where the slope, which has unlike signs at its ends, is zero or lost in rounding.
@@ -56,4 +45,21 @@ impl Line<'_> {
             if here == before { start = middle } else { end = middle }
         }
     }
+}
+
+fn middle_of(root: Span) -> f64 {
+    root.start + 0.5 * (root.end - root.start)
+}
+
+/// The part of `root` that may hold the zero of F, which is monotone there with a derivative in `slope` and in `value` at `middle`.
+fn newton_step(root: Span, (middle, value): (f64, Interval), slope: Interval) -> Span {
+    let Some(direction) = side(slope) else { return root };
+    let newton = Interval::point(middle).minus(value.over(slope));
+    let mut next = Span { start: root.start.max(newton.lo), end: root.end.min(newton.hi) };
+    match side(value) {
+        Some(height) if height == direction => next.end = next.end.min(middle),
+        Some(_) => next.start = next.start.max(middle),
+        None => {}
+    }
+    if next.start <= next.end { next } else { root }
 }

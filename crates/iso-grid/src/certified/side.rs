@@ -10,6 +10,16 @@ pub(super) enum Side {
     Above,
 }
 
+impl Side {
+    /// The sign of numbers there.
+    pub(super) fn sign(self) -> f64 {
+        match self {
+            Self::Below => -1.0,
+            Self::Above => 1.0,
+        }
+    }
+}
+
 /// The side of zero of all of `interval`; `None` when it holds zero or nothing.
 pub(super) fn side(interval: Interval) -> Option<Side> {
     if interval.lo > 0.0 {

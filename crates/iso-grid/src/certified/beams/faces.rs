@@ -3,7 +3,7 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
-use iso_expr::{Composition, Decoration, Extreme, Interval};
+use iso_expr::{Composition, Decorated, Decoration, Extreme, Interval};
 use pulp::Simd;
 
 use super::bend::Bend;
@@ -17,11 +17,15 @@ use super::pixels::Pixels;
 use super::subdivision::{Faces, Known, Part, Subdivision};
 use crate::area::Area;
 use crate::certified::kernels::bounds_between;
+use crate::certified::side::side;
 use crate::lanes::{Lanes, Row, parts};
 use crate::{Kernel, Tile};
 
 /// With more open ones on the way, no others are asked for: it is unlikely that those decide enough.
 const TOO_MANY: usize = 2 * MOST;
+
+/// Of functions of more operations values are asked for first, which take much less time than gradients and most often tell a sign.
+const LONG: u64 = 100;
 
 /// One of the functions of which F is made, or F itself, where it may have roots, to first order.
 pub(super) struct Outline {
@@ -265,6 +269,15 @@ impl Subdivision<'_> {
         }
         let (t, center) = self.center(part);
         let bounds = self.beam(part.beam).bounds_in_space(part.form.reach);
+        if self.kernels(kernels).operations(Kernel::Values) > LONG {
+            let [value]: [Decorated; 1] = self.enclose_one(kernels, Kernel::ValueEnclosures, bounds)?;
+            if value.decoration < Decoration::Defined {
+                return None;
+            }
+            if let Some(side) = side(value.interval) {
+                return Some(Made::Signed(side.sign()));
+            }
+        }
         let both = [(center, center), bounds];
         let [jet, over_all] = self.enclose_all(kernels, Kernel::GradientEnclosures, both)?;
         if over_all[0].decoration < Decoration::Defined {

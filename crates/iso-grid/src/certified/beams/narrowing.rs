@@ -10,7 +10,7 @@ use super::made::deciding;
 use super::slabs::Slab;
 use super::subdivision::{Known, Part, Subdivision};
 use crate::certified::kernels::{BATCH, bounds_between};
-use crate::certified::side::{Side, side};
+use crate::certified::side::side;
 use crate::{Kernel, Workspace};
 
 /// Of functions of more operations it takes less time to enclose them as a whole, until places leave less of them.
@@ -117,8 +117,7 @@ impl Subdivision<'_> {
         for (slab, left) in left.iter_mut().enumerate().take(count) {
             let found = boxes.decorated(0, slab);
             if let Some(side) = side(found.interval) {
-                let sign = if side == Side::Below { -1.0 } else { 1.0 };
-                *left = Left::Sign { sign, is_defined: found.decoration >= Decoration::Defined };
+                *left = Left::Sign { sign: side.sign(), is_defined: found.decoration >= Decoration::Defined };
             }
         }
         left

@@ -183,27 +183,35 @@ impl Subdivision<'_> {
         counters.box_evaluations += slabs.len() as u64;
         counters.operations += kernels.charge(kind, slabs.len());
         self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
-        for number in 0..slabs.len() {
-            let Slab { beam, kernels, stretch, reach, is_inside, .. } = slabs[number];
-            let rays = self.beam(beam);
-            let forms = &self.workspace.forms;
-            let found = match kind {
-                Kernel::ParallelForms => forms.found(number).map(|[value, slope]| (value, Ball::of(&slope))),
-                _ => forms.found(number).map(|[value, gradient @ ..]: [Affine; 4]| {
-                    (value, Ball::along(&rays.directions, &gradient))
-                }),
-            };
-            let form = match found {
-                Some((value, slope)) => Form::affine(rays, reach, units[number], &value, slope),
-                None => Form::unknown(reach),
-            };
-            if found.is_none() || form.is_vague() {
-                // Where F is nearly constant, enclosures of its derivatives and its middle take fewer roundings.
-                self.keep_by_gradients(&slabs[number..=number]);
-            } else if !form.excludes_zero() {
+        let mut found = [None; BATCH];
+        for (number, (slab, found)) in slabs.iter().zip(&mut found).enumerate() {
+            *found = self.affine_form(slab, number, units[number]);
+        }
+        let mut number = 0;
+        while let Some(&Slab { beam, kernels, stretch, is_inside, .. }) = slabs.get(number) {
+            let vague = found[number..slabs.len()].iter().take_while(|found| found.is_none()).count();
+            // Where F is nearly constant, enclosures of its derivatives and its middle take fewer roundings.
+            self.keep_by_gradients(&slabs[number..number + vague]);
+            number += vague.max(1);
+            if let Some(form) = found[number - 1]
+                && !form.excludes_zero()
+            {
                 self.memory.ahead.push(Part { beam, kernels, stretch, form, is_inside });
             }
         }
+    }
+
+    /// F on a slab, the one of this number among those whose forms were found last; `None` where they say nothing or less than roundings.
+    fn affine_form(&self, slab: &Slab, number: usize, unit: (f64, f64)) -> Option<Form> {
+        let (rays, forms) = (self.beam(slab.beam), &self.workspace.forms);
+        let (value, slope) = match self.forms() {
+            Kernel::ParallelForms => forms.found(number).map(|[value, slope]| (value, Ball::of(&slope)))?,
+            _ => forms.found(number).map(|[value, gradient @ ..]: [Affine; 4]| {
+                (value, Ball::along(&rays.directions, &gradient))
+            })?,
+        };
+        let form = Form::affine(rays, slab.reach, unit, &value, slope);
+        (!form.is_vague()).then_some(form)
     }
 
     /// Keeps slabs that may hold roots, as far as enclosures of F and its gradient tell.
