@@ -25,10 +25,10 @@ mod lanes;
 mod listing;
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
 mod nearby;
-mod pairs;
 mod pieces;
 mod point;
 mod symbols;
+mod together;
 mod trampoline;
 mod values;
 

@@ -9,7 +9,8 @@ use crate::code::{Blueprint, Compiled};
 use crate::host::{self, Limits};
 use crate::lanes::{Lanes, Writer};
 use crate::symbols::Calls;
-use crate::{pairs, values};
+use crate::together::Order;
+use crate::values;
 
 /// A program's one output at (x, y, z), as native code.
 pub struct NativeFunction(pub(crate) Compiled<extern "C" fn(f64, f64, f64) -> f64>);
@@ -109,15 +110,16 @@ fn outputs(
     let mut writer = Writer::new(builder, Lanes::One);
     // Nodes are not always written in their order.
     let mut values = vec![Value::reserved_value(); program.nodes().len()];
-    for (id, other) in pairs::steps(program) {
+    for step in Order::in_pairs(program).steps() {
         let of = |operand: NodeId| values[operand.index()];
+        let (id, other) = (step[0], step.get(1));
         match (program.node(id), other) {
             (Node::Variable(argument), _) => values[id.index()] = arguments[argument.index()],
             (Node::Constant(constant), _) => values[id.index()] = writer.constant(constant.value()),
             (Node::Apply(operation, operands), None) => {
                 values[id.index()] = values::apply(&mut writer, calls, operation, operands.map(of));
             }
-            (Node::Apply(operation, operands), Some(other)) => {
+            (Node::Apply(operation, operands), Some(&other)) => {
                 let mut pairs = operands.map(of);
                 for (place, pair) in pairs.iter_mut().enumerate().take(operation.arity()) {
                     let both = [operands[place], program.node(other).operands()[place]];

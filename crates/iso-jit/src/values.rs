@@ -4,11 +4,13 @@ use std::collections::HashMap;
 
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{InstBuilder, Value};
+use cranelift_codegen::packed_option::ReservedValue;
 use iso_expr::{Argument, Node, NodeId, Operation, Program};
 
 use crate::elementary;
 use crate::lanes::Writer;
 use crate::symbols::Calls;
+use crate::together::Order;
 
 /// Whether an operation's value is written out by [`apply`]; the others are left to functions.
 pub(crate) fn is_written_out(operation: Operation) -> bool {
@@ -27,7 +29,11 @@ fn is_rounding(operation: Operation) -> bool {
     matches!(operation, O::Floor | O::Ceil | O::Round | O::Truncate)
 }
 
-/// Writes `count` evaluations of `program` side by side, so that the processor works on all of them at once. `argument` gives an
+/// What functions of many numbers are taken of where there are fewer: none of their values takes long.
+const UNUSED: f64 = 2.0;
+
+/// Writes `count` evaluations of `program` side by side, so that the processor works on all of them at once; where they leave lanes of a function
+/// empty, it takes several operations in one call. `argument` gives an
 /// argument of each when it is first needed. Gives the outputs of each.
 pub(crate) fn evaluate(
     writer: &mut Writer<'_, '_>,
@@ -36,42 +42,48 @@ pub(crate) fn evaluate(
     count: usize,
     mut argument: impl FnMut(&mut Writer<'_, '_>, Argument) -> Vec<Value>,
 ) -> Vec<Vec<Value>> {
-    let mut values: Vec<Vec<Value>> = vec![Vec::with_capacity(program.nodes().len()); count];
-    let fill_lanes = count * writer.lanes.count() == elementary::WIDTH;
-    let pairs = if fill_lanes { waves(program) } else { HashMap::new() };
+    let of_evaluation = vec![Value::reserved_value(); program.nodes().len()];
+    let mut values: Vec<Vec<Value>> = vec![of_evaluation; count];
+    // How many operands a function takes at once, and of how many operations that is.
+    let taken_at_once = elementary::WIDTH / writer.lanes.count();
+    let in_a_call = taken_at_once / count;
+    let waves = if in_a_call == 1 { waves(program) } else { HashMap::new() };
     // The sines and cosines of what both are taken of, from when one is needed on.
     let mut both = HashMap::new();
-    for node in program.nodes() {
+    for step in Order::in_calls(program, in_a_call).steps() {
         let of = |operand: NodeId| values.iter().map(move |values| values[operand.index()]);
-        let results: Vec<Value> = match node {
-            Node::Variable(number) => argument(writer, *number),
+        let results: Vec<Value> = match program.node(step[0]) {
+            Node::Variable(number) => argument(writer, number),
             Node::Constant(constant) => vec![writer.constant(constant.value()); count],
             Node::Apply(operation @ (Operation::Sin | Operation::Cos), [operand, ..])
-                if pairs.get(operand) == Some(&[true; 2])
+                if waves.get(&operand) == Some(&[true; 2])
                     && let Some(function) = calls.both_in_lanes(writer.builder.func) =>
             {
-                let results: &Vec<Value> = both.entry(*operand).or_insert_with(|| {
-                    let operands: Vec<_> = of(*operand).collect();
+                let results: &Vec<Value> = both.entry(operand).or_insert_with(|| {
+                    let operands: Vec<_> = of(operand).collect();
                     writer.call_in_place(function, &operands, 2 * count)
                 });
                 let (sines, cosines) = results.split_at(count);
-                if *operation == Operation::Sin { sines.to_vec() } else { cosines.to_vec() }
+                if operation == Operation::Sin { sines.to_vec() } else { cosines.to_vec() }
             }
-            Node::Apply(operation, operands) => {
-                let in_lanes = fill_lanes.then(|| calls.in_lanes(writer.builder.func, *operation)).flatten();
-                match in_lanes {
-                    Some(function) => {
-                        writer.call_in_place(function, &of(operands[0]).collect::<Vec<_>>(), count)
-                    }
-                    None => {
-                        let [a, b, c] = operands.map(of);
-                        let operands = a.zip(b).zip(c).map(|((a, b), c)| [a, b, c]);
-                        operands.map(|operands| apply(writer, calls, *operation, operands)).collect()
-                    }
+            Node::Apply(operation, operands) => match calls.in_lanes(writer.builder.func, operation) {
+                Some(function) => {
+                    let operands = step.iter().flat_map(|id| of(program.node(*id).operands()[0]));
+                    let mut operands: Vec<_> = operands.collect();
+                    let taken = operands.len();
+                    operands.resize(taken_at_once, writer.constant(UNUSED));
+                    writer.call_in_place(function, &operands, taken)
                 }
-            }
+                None => {
+                    let [a, b, c] = operands.map(of);
+                    let operands = a.zip(b).zip(c).map(|((a, b), c)| [a, b, c]);
+                    operands.map(|operands| apply(writer, calls, operation, operands)).collect()
+                }
+            },
         };
-        values.iter_mut().zip(results).for_each(|(values, result)| values.push(result));
+        for (id, results) in step.iter().zip(results.chunks(count)) {
+            values.iter_mut().zip(results).for_each(|(values, result)| values[id.index()] = *result);
+        }
     }
     let outputs = |values: Vec<Value>| program.outputs().iter().map(|id| values[id.index()]).collect();
     values.into_iter().map(outputs).collect()
