@@ -216,7 +216,12 @@ impl Subdivision<'_> {
 
     /// Keeps slabs that may hold roots, as far as enclosures of F and its gradient tell.
     fn keep_by_gradients(&mut self, slabs: &[Slab]) {
-        self.enclose(slabs);
+        let first = match slabs {
+            [] => return,
+            [slab] => return self.keep_by_gradient(slab),
+            [first, ..] => first,
+        };
+        self.enclose(first.kernels, slabs.iter().map(|slab| (slab.lo, slab.hi)));
         let (mut open, mut count) = ([0; BATCH], 0);
         for number in 0..slabs.len() {
             if !free_of_zero(self.workspace.boxes.interval(0, number)) {
@@ -230,6 +235,16 @@ impl Subdivision<'_> {
         for (place, number) in open.iter().enumerate() {
             let value = self.workspace.middles.interval(0, place);
             behind = self.keep(&slabs[*number], *number, value, behind);
+        }
+    }
+
+    /// Keeps a slab likewise. Its middle is enclosed with it, for two boxes take no longer than one.
+    fn keep_by_gradient(&mut self, slab: &Slab) {
+        let (_, middle) = slab.middle;
+        self.enclose(slab.kernels, [(slab.lo, slab.hi), (middle, middle)].into_iter());
+        let [all, middle] = [0, 1].map(|number| self.workspace.boxes.interval(0, number));
+        if !free_of_zero(all) {
+            self.keep(slab, 0, middle, None);
         }
     }
 
@@ -298,16 +313,15 @@ impl Subdivision<'_> {
         kept
     }
 
-    /// Encloses F and its derivatives over each slab.
-    fn enclose(&mut self, slabs: &[Slab]) {
-        let Some(&Slab { kernels, .. }) = slabs.first() else { return };
+    /// Encloses F and its derivatives over the boxes with these corners by kernels of this number.
+    fn enclose(&mut self, kernels: u32, corners: impl Iterator<Item = (DVec3, DVec3)>) {
         let kernels = &self.kernels[kernels as usize];
         let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
-        boxes.replace(slabs.iter().map(|slab| (slab.lo, slab.hi)));
+        boxes.replace(corners);
         boxes.evaluate(kernels.gradients(), scratch, 4);
-        counters.box_evaluations += slabs.len() as u64;
-        counters.operations += kernels.charge(Kernel::GradientEnclosures, slabs.len());
-        self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
+        counters.box_evaluations += boxes.len() as u64;
+        counters.operations += kernels.charge(Kernel::GradientEnclosures, boxes.len());
+        self.work_left = self.work_left.saturating_sub(boxes.len() as u64);
     }
 
     /// Encloses F in the middle of each of the slabs that are open.
