@@ -107,7 +107,57 @@ pub(super) fn outwards(lo: DVec3, hi: DVec3) -> [Interval; 3] {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
+    use iso_expr::{Ast, Interpreter};
+
     use super::*;
+    use crate::{Certified, Outcome, Raster, Region, Surface, Tile, Workspace};
+
+    /// The values of exp(40x) around 0 are of size 1, but e¹⁶ on a box that is only 0.4 wide.
+    #[test]
+    fn a_larger_box_is_shared_where_it_will_do_and_grows_no_larger_than_that() {
+        let program = Ast::parse("exp(40x) - y").unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
+        let surface = Surface::new(Arc::new(Interpreter), program);
+        let certified =
+            Certified::new(&surface, Region::new(DVec3::splat(-1.0), DVec3::splat(1.0)).unwrap()).unwrap();
+        let (right, down) = (0.02 * DVec3::X, 0.02 * DVec3::Y);
+        let raster = Raster::Parallel { middle: 4.0 * DVec3::Z, right, down, direction: DVec3::NEG_Z };
+        let tile = Tile::of(&raster, [-2.0, -2.0], 4, 4);
+        let (mut workspace, mut outcomes) = (Workspace::default(), vec![Outcome::Miss; tile.len()]);
+        let mut subdivision =
+            Subdivision::new(&certified, &mut workspace, tile, (&mut outcomes, None)).unwrap();
+        let size = 0.05 * DVec3::ONE;
+        let at = |x: f64| (x * DVec3::X - size, x * DVec3::X + size);
+        let runs = |subdivision: &Subdivision<'_>| subdivision.workspace.counters.box_evaluations / 2;
+
+        // Any bound will do: the box around also holds what is beside the one that was asked for.
+        let wide = subdivision.rounding((0, 0), at(0.0), |_, _| true).unwrap();
+        assert!(wide.covers(wide.function, at(-0.1).0, at(0.1).1));
+        subdivision.rounding((0, 0), at(0.1), |_, _| true).unwrap();
+        assert_eq!(runs(&subdivision), 1);
+
+        // That is too much for some: then it is the box itself, and the next box around is smaller.
+        let is_little = |bound: &Rounding, _: &Beam| bound.of_values < 100.0;
+        let own = subdivision.rounding((0, 0), at(0.0), is_little).unwrap();
+        assert!(own.of_values < 100.0 && wide.of_values > 1000.0);
+        assert_eq!((own.lo, own.hi), at(0.0));
+        assert!(subdivision.memory.room < AROUND);
+        assert_eq!(runs(&subdivision), 2);
+
+        // It is remembered, too, and found behind one that came after it.
+        subdivision.rounding((0, 0), at(-0.5), |_, _| true).unwrap();
+        subdivision.rounding((0, 0), at(0.0), is_little).unwrap();
+        assert_eq!(runs(&subdivision), 3);
+
+        for _ in 0..60 {
+            subdivision.memory.roundings.clear();
+            let shared = subdivision.rounding((0, 0), at(0.0), is_little).unwrap();
+            assert!(shared.of_values < 100.0);
+        }
+        // With r boxes more at each side, exp(40x) is up to e²⁺⁴ʳ, of which a few come to 100 where r is a quarter.
+        assert!((0.15..0.4).contains(&subdivision.memory.room), "{}", subdivision.memory.room);
+    }
 
     #[test]
     fn a_bound_holds_for_its_own_function_inside_its_own_box() {
