@@ -10,7 +10,7 @@ use iso_grid::{
 };
 
 /// Formulas, half sides of their regions, and what they are tried for.
-const SCENES: [(&str, f64, &str); 61] = [
+const SCENES: [(&str, f64, &str); 62] = [
     ("(x^2+y^2-1)^2 + 4z^2 + 0.5x - 0.2", 1.5, "a classic"),
     ("x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8", 2.6, "parts in front of each other"),
     ("sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)", 5.0, "cut by the region's faces"),
@@ -88,7 +88,13 @@ const SCENES: [(&str, f64, &str); 61] = [
     ),
     ("x^2+y^2+z^2-1 + (1 + 0sqrt(x+0.3) - 1)*sqrt(y+0.4)", 1.2, "a cut that simplifying uncovers"),
     (SHARP, 1.3, "a sharp blend, whose exponentials underflow not far from the surface"),
+    (CLOUDS, 1.3, "a union of long functions"),
 ];
+
+/// Two clouds of sixteen puffs each, over 100 operations.
+const CLOUDS: &str = "puff(a,b,c) := exp(-20((x-a)^2+(y-b)^2+(z-c)^2)); row(a,b,c) := puff(a,b,c) + puff(a+0.2,b,c+0.1); \
+    quad(a,b,c) := row(a,b,c) + row(a-0.1,b+0.2,c-0.1); oct(a,b,c) := quad(a,b,c) + quad(a,b-0.3,c+0.2); \
+    cloud(a,b,c) := 0.5 - oct(a,b,c) - oct(a+0.1,b+0.1,c-0.3); min(cloud(0.3,0.2,0), cloud(-0.5,0,0.1))";
 
 /// Of six balls and a slab, few count anywhere.
 const BALLS: &str = "ball(a,b,c) := (x-a)^2+(y-b)^2+(z-c)^2 - 0.3; \
