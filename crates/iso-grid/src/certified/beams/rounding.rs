@@ -114,7 +114,7 @@ mod tests {
     use super::*;
     use crate::{Certified, Outcome, Raster, Region, Surface, Tile, Workspace};
 
-    /// The values of exp(40x) around 0 are of size 1, but e¹⁶ on a box that is only 0.4 wide.
+    /// exp(40x) is 1 at 0, but up to e⁸ on a box that is only 0.4 wide.
     #[test]
     fn a_larger_box_is_shared_where_it_will_do_and_grows_no_larger_than_that() {
         let program = Ast::parse("exp(40x) - y").unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
