@@ -32,9 +32,9 @@ fn is_rounding(operation: Operation) -> bool {
 /// What functions of many numbers are taken of where there are fewer: none of their values takes long.
 const UNUSED: f64 = 2.0;
 
-/// Writes `count` evaluations of `program` side by side, so that the processor works on all of them at once; where they leave lanes of a function
-/// empty, it takes several operations in one call. `argument` gives an
-/// argument of each when it is first needed. Gives the outputs of each.
+/// Writes `count` evaluations of `program` side by side, so that the processor works on all of them at once; where these leave
+/// lanes of a function empty, it takes several operations in one call. `argument` gives an argument of each when it is first
+/// needed. Gives the outputs of each.
 pub(crate) fn evaluate(
     writer: &mut Writer<'_, '_>,
     calls: &mut Calls<'_>,
