@@ -88,13 +88,14 @@ const SCENES: [(&str, f64, &str); 62] = [
     ),
     ("x^2+y^2+z^2-1 + (1 + 0sqrt(x+0.3) - 1)*sqrt(y+0.4)", 1.2, "a cut that simplifying uncovers"),
     (SHARP, 1.3, "a sharp blend, whose exponentials underflow not far from the surface"),
-    (CLOUDS, 1.3, "a union of long functions"),
+    (CLOUDS, 1.3, "a union of long functions, undefined where one is that decides nothing"),
 ];
 
-/// Two clouds of sixteen puffs each, over 100 operations.
+/// Two clouds of sixteen puffs each, over 100 operations, below a height above which a function that is never below 3 is none.
 const CLOUDS: &str = "puff(a,b,c) := exp(-20((x-a)^2+(y-b)^2+(z-c)^2)); row(a,b,c) := puff(a,b,c) + puff(a+0.2,b,c+0.1); \
     quad(a,b,c) := row(a,b,c) + row(a-0.1,b+0.2,c-0.1); oct(a,b,c) := quad(a,b,c) + quad(a,b-0.3,c+0.2); \
-    cloud(a,b,c) := 0.5 - oct(a,b,c) - oct(a+0.1,b+0.1,c-0.3); min(cloud(0.3,0.2,0), cloud(-0.5,0,0.1))";
+    cloud(a,b,c) := 0.5 - oct(a,b,c) - oct(a+0.1,b+0.1,c-0.3); \
+    min(cloud(0.3,0.2,0), cloud(-0.5,0,0.1), 3.5 - cloud(0,0,0) + sqrt(0.1 - z))";
 
 /// Of six balls and a slab, few count anywhere.
 const BALLS: &str = "ball(a,b,c) := (x-a)^2+(y-b)^2+(z-c)^2 - 0.3; \
