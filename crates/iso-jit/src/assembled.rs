@@ -98,9 +98,9 @@ impl Assembled {
         });
         let mut functions = pieces.functions(wanted)?.into_iter();
         let nodes = || program.nodes().iter().zip(&ranges);
-        let constant =
-            |(node, range): (&Node, &Decorated)| matches!(node, Node::Constant(_)).then(|| in_memory(*range));
-        let constants: Vec<f64> = nodes().filter_map(constant).flatten().collect();
+        let is_constant = |(node, _): &(&Node, &Decorated)| matches!(node, Node::Constant(_));
+        let mut constants = Vec::with_capacity(SIZE * nodes().filter(is_constant).count());
+        nodes().filter(is_constant).for_each(|(_, range)| constants.extend(in_memory(*range)));
         let argument = |(node, _): (&Node, _)| match node {
             Node::Variable(argument) => Some(argument.index()),
             _ => None,
@@ -144,28 +144,49 @@ impl Assembled {
         self.first_result() + SIZE * self.steps.len()
     }
 
-    /// Each step, and where its result stands.
-    fn steps(&self) -> impl Iterator<Item = (&Step, usize)> {
-        self.steps.iter().zip((self.first_result()..).step_by(SIZE))
+    /// Puts two boxes in the places of the arguments; says whether they are inside the domain.
+    fn put_boxes(&self, values: &mut [f64], boxes: Boxes<'_>, lanes: [usize; PAIR]) -> bool {
+        let (places, _) = values[self.constants.len()..].as_chunks_mut::<SIZE>();
+        let mut are_inside = true;
+        for (axis, parts) in self.arguments.iter().zip(&mut *places) {
+            let (lo, hi) = (boxes.lo[*axis], boxes.hi[*axis]);
+            for (lane, number) in lanes.into_iter().enumerate() {
+                let (lo, hi) = (lo[number], hi[number]);
+                are_inside &= Domain::holds(Domain::NEAR, lo, hi);
+                // The same enclosure as below, without saying that it is common: pieces that take it know.
+                (parts[LO + lane], parts[MINUS_HI + lane]) = (lo + 0.0, 0.0 - hi);
+            }
+        }
+        if !are_inside {
+            for (axis, parts) in self.arguments.iter().zip(places) {
+                for (lane, number) in lanes.into_iter().enumerate() {
+                    put(parts, lane, Decorated::argument(boxes.lo[*axis][number], boxes.hi[*axis][number]));
+                }
+            }
+        }
+        are_inside
     }
 
     /// Computes all values over two boxes inside the domain, where constants and arguments stand in their places.
     fn run(&self, values: &mut [f64]) {
         assert_eq!(values.len(), self.length(), "room for every value");
         let start = values.as_mut_ptr();
-        for (Step { apply, operands, .. }, result) in self.steps() {
+        let mut result = self.first_result();
+        for Step { apply, operands: [a, b, c], .. } in &self.steps {
             // SAFETY: all places are inside the values, and the pieces live as long as the kernel. A result stands behind the operands, so that a
             // piece reads nothing that it writes.
             unsafe {
-                let [a, b, c] = operands.map(|place| start.cast_const().add(place.start()));
+                let [a, b, c] = [a, b, c].map(|place| start.cast_const().add(place.start()));
                 apply(start.add(result), a, b, c);
             }
+            result += SIZE;
         }
     }
 
     /// The same over any boxes, empty, unbounded and huge ones included, for which the pieces were not chosen.
     fn run_anywhere(&self, values: &mut [f64]) {
-        for (Step { operation, operands, .. }, result) in self.steps() {
+        let results = (self.first_result()..).step_by(SIZE);
+        for (Step { operation, operands, .. }, result) in self.steps.iter().zip(results) {
             for lane in 0..PAIR {
                 let operands = operands.map(|place| decorated(&values[place.start()..], lane));
                 put(&mut values[result..], lane, operation.extension().of(operands));
@@ -203,32 +224,20 @@ impl BoxKernel for Assembled {
             [self.outputs.len() * count; 3],
             "room for every output over every box"
         );
-        let is_inside = Domain::holds_all(Domain::NEAR, boxes);
         let values = scratch.values(self.length());
         values[..self.constants.len()].copy_from_slice(&self.constants);
         for first in (0..count).step_by(PAIR) {
             // The last box of an odd number stands in both lanes.
             let lanes = [first, (first + 1).min(count - 1)];
-            let places = values[self.constants.len()..].chunks_exact_mut(SIZE);
-            for (axis, parts) in self.arguments.iter().zip(places) {
-                for (lane, number) in lanes.into_iter().enumerate() {
-                    let (lo, hi) = (boxes.lo[*axis][number], boxes.hi[*axis][number]);
-                    if is_inside {
-                        // The same enclosure, without saying that it is common: pieces that take it know.
-                        (parts[LO + lane], parts[MINUS_HI + lane]) = (lo + 0.0, 0.0 - hi);
-                    } else {
-                        put(parts, lane, Decorated::argument(lo, hi));
-                    }
-                }
-            }
-            if is_inside {
+            let are_inside = self.put_boxes(values, boxes, lanes);
+            if are_inside {
                 self.run(values);
             } else {
                 self.run_anywhere(values);
             }
             for (output, (place, kind)) in self.outputs.iter().enumerate() {
-                let parts = &values[place.start()..];
-                let is_common = is_inside && kind.is_common;
+                let parts = &values[place.start()..][..SIZE];
+                let is_common = are_inside && kind.is_common;
                 for (lane, number) in lanes.into_iter().enumerate() {
                     let place = output * count + number;
                     (lo[place], hi[place]) = (parts[LO + lane], -parts[MINUS_HI + lane]);

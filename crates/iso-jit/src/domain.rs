@@ -121,12 +121,17 @@ impl Domain {
         self.ranges.iter().filter(|range| range.decoration == Common).count()
     }
 
+    /// Whether an interval is not empty and lies inside a domain of this reach.
+    pub(crate) fn holds(reach: f64, lo: f64, hi: f64) -> bool {
+        (-reach <= lo) & (lo <= hi) & (hi <= reach)
+    }
+
     /// Whether none of the boxes is empty, and all lie inside a domain of this reach.
     pub(crate) fn holds_all(reach: f64, boxes: Boxes<'_>) -> bool {
         let mut are_inside = true;
         for (lo, hi) in boxes.lo.iter().zip(&boxes.hi) {
             for (lo, hi) in lo.iter().zip(*hi) {
-                are_inside &= (-reach <= *lo) & (lo <= hi) & (*hi <= reach);
+                are_inside &= Self::holds(reach, *lo, *hi);
             }
         }
         are_inside
