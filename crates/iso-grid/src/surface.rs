@@ -148,7 +148,8 @@ impl Surface {
                 self.programs.rounding.get_or_init(|| self.value.with_rounding().simplified())
             }
             Kernel::HessianEnclosures => {
-                self.programs.hessian.get_or_init(|| self.value.with_hessian().simplified())
+                let gradient = || self.program_of(Kernel::Gradients);
+                self.programs.hessian.get_or_init(|| gradient().with_hessian().simplified())
             }
             Kernel::Forms => self.programs.forms.get_or_init(|| {
                 let forms = self.program_of(Kernel::Gradients).with_forms();

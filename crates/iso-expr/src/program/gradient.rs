@@ -4,6 +4,9 @@ use super::{Argument, Axis, NodeId, Program};
 use crate::Node;
 use crate::operation::Chain;
 
+/// How many times as many nodes derivatives take, about.
+pub(super) const EXPECTED: usize = 3;
+
 impl Program {
     /// The program that computes this one's only output F, then ∂F/∂x, ∂F/∂y and ∂F/∂z.
     ///
@@ -35,14 +38,14 @@ impl Program {
         program.pruned()
     }
 
-    /// The program that computes this one's only output F, then its [gradient](Self::with_gradient), and then ∂²F/∂x², ∂²F/∂x∂y,
-    /// ∂²F/∂x∂z, ∂²F/∂y², ∂²F/∂y∂z and ∂²F/∂z², each a derivative of the simplified gradient.
+    /// The program that computes what this one does, F and its [gradient](Self::with_gradient), and then ∂²F/∂x², ∂²F/∂x∂y, ∂²F/∂x∂z,
+    /// ∂²F/∂y², ∂²F/∂y∂z and ∂²F/∂z², each a derivative of the gradient.
     ///
     /// # Panics
-    /// When the program has not just one output.
+    /// When the program has not just these four outputs.
     pub fn with_hessian(&self) -> Self {
-        let gradient = self.with_gradient().simplified();
-        let Derivatives { mut program, values, gradients } = gradient.differentiated(along_axes);
+        assert_eq!(self.outputs.len(), 4, "a function and its gradient are differentiated");
+        let Derivatives { mut program, values, gradients } = self.differentiated(along_axes);
         let [_, [xx, xy, xz], [_, yy, yz], [.., zz]] = gradients[..] else {
             unreachable!("F and its gradient are four outputs")
         };
@@ -56,7 +59,7 @@ impl Program {
         &self,
         of_argument: impl Fn(&mut Self, Argument) -> [Option<NodeId>; N],
     ) -> Derivatives<N> {
-        let mut program = Self::new();
+        let mut program = Self::draft(EXPECTED * self.nodes.len());
         // For each node of this program, in the same order.
         let mut places: Vec<NodeId> = Vec::with_capacity(self.nodes.len());
         let mut gradients: Vec<[Option<NodeId>; N]> = Vec::with_capacity(self.nodes.len());

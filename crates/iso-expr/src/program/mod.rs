@@ -7,6 +7,7 @@ mod display;
 mod exact;
 mod forms;
 mod gradient;
+mod needed;
 mod powers;
 mod rebuild;
 #[cfg(any(test, feature = "random"))]
@@ -112,7 +113,8 @@ impl Node {
     }
 }
 
-/// Nodes in an order in which each stands after its operands, no two of them equal, and some of them named as outputs.
+/// Nodes in an order in which each stands after its operands, and some of them named as outputs. No two nodes are equal but in derivatives that
+/// were not [simplified](Self::simplified) yet.
 ///
 /// The order of evaluation, and with it every rounding, is part of the program: engines compute just the operations that
 /// stand here, so all of them agree bit for bit.
@@ -122,6 +124,8 @@ pub struct Program {
     /// Where each node is. Copies leave it empty until they are added to.
     places: FxHashMap<Node, NodeId>,
     outputs: Vec<NodeId>,
+    /// Whether equal nodes may stand in it until it is simplified, as nothing is looked up while they are added.
+    is_draft: bool,
 }
 
 /// Equal programs have the same nodes in the same order, and the same outputs.
@@ -143,6 +147,11 @@ impl Program {
     /// A program without nodes or outputs.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// The same for nodes of which many are to be simplified away, so many in all.
+    fn draft(nodes: usize) -> Self {
+        Self { nodes: Vec::with_capacity(nodes), is_draft: true, ..Self::new() }
     }
 
     /// All nodes, operands before the nodes that use them.
@@ -249,15 +258,20 @@ impl Program {
     }
 
     fn intern(&mut self, node: Node) -> NodeId {
+        if self.is_draft {
+            return push(&mut self.nodes, node);
+        }
         if self.places.len() < self.nodes.len() {
             self.places = self.iter().map(|(id, node)| (*node, id)).collect();
         }
-        *self.places.entry(node).or_insert_with(|| {
-            let id = u32::try_from(self.nodes.len()).expect("formulas are limited to far fewer nodes");
-            self.nodes.push(node);
-            NodeId(id)
-        })
+        *self.places.entry(node).or_insert_with(|| push(&mut self.nodes, node))
     }
+}
+
+fn push(nodes: &mut Vec<Node>, node: Node) -> NodeId {
+    let id = u32::try_from(nodes.len()).expect("formulas are limited to far fewer nodes");
+    nodes.push(node);
+    NodeId(id)
 }
 
 #[cfg(test)]

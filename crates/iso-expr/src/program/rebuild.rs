@@ -1,5 +1,6 @@
 //! Copies of programs, node by node: what every pass is made of.
 
+use super::needed::Needed;
 use super::{Node, NodeId, Program};
 
 impl Program {
@@ -10,16 +11,13 @@ impl Program {
 
     /// A copy without the nodes that none of these values needs, which are its outputs.
     pub(super) fn pruned_to(&self, outputs: &[NodeId]) -> Self {
-        let needed = self.needed_for(outputs);
-        let mut pruned = Self::new();
-        pruned.nodes.reserve(needed.iter().filter(|is_needed| **is_needed).count());
-        let mut places = Vec::with_capacity(needed.len());
-        for (node, needed) in self.nodes.iter().zip(needed) {
-            // What is not needed is never looked up, so that any place will do for it.
-            places.push(NodeId(pruned.nodes.len() as u32));
-            if needed {
-                pruned.nodes.push(node.with_operands(|operand| places[operand.index()]));
-            }
+        let needed = Needed::for_values(self, outputs);
+        let nodes = Vec::with_capacity(needed.count());
+        let mut pruned = Self { nodes, is_draft: self.is_draft, ..Self::new() };
+        let mut places = vec![NodeId(0); self.nodes.len()];
+        for id in needed.ids() {
+            places[id.index()] = NodeId(pruned.nodes.len() as u32);
+            pruned.nodes.push(self.node(id).with_operands(|operand| places[operand.index()]));
         }
         pruned.outputs = outputs.iter().map(|output| places[output.index()]).collect();
         pruned
@@ -33,28 +31,12 @@ impl Program {
         mut build: impl FnMut(&mut Self, Node) -> NodeId,
     ) -> Vec<NodeId> {
         let mut places: Vec<NodeId> = Vec::with_capacity(other.nodes.len());
+        self.nodes.reserve(other.nodes.len());
         self.places.reserve(other.nodes.len());
         for node in &other.nodes {
             let node = node.with_operands(|operand| places[operand.index()]);
             places.push(build(self, node));
         }
         other.outputs.iter().map(|output| places[output.index()]).collect()
-    }
-
-    /// For each node up to the last of these values whether one of them is computed from it.
-    fn needed_for(&self, values: &[NodeId]) -> Vec<bool> {
-        let count = values.iter().map(|value| value.index() + 1).max().unwrap_or(0);
-        let mut needed = vec![false; count];
-        for value in values {
-            needed[value.index()] = true;
-        }
-        for (place, node) in self.nodes[..count].iter().enumerate().rev() {
-            if needed[place] {
-                for operand in node.operands() {
-                    needed[operand.index()] = true;
-                }
-            }
-        }
-        needed
     }
 }

@@ -1,7 +1,10 @@
 //! Shortening: what a program comes to on a box where some of its branches are decided.
 
+use super::needed::Needed;
 use super::simplify::folded;
 use super::{Node, NodeId, Program};
+use crate::interval::Extension;
+use crate::interval::extension::{add, maximum, minimum, multiply, subtract};
 use crate::{Constant, Decorated, Decoration, Interval, Operation};
 
 /// A program is rebuilt when it keeps no more than this part of its nodes, or loses its last branch.
@@ -72,19 +75,13 @@ impl Program {
     /// When the program has another number of outputs than one.
     pub fn shortened(&self, domain: [Interval; 3]) -> Option<Self> {
         assert_eq!(self.outputs.len(), 1, "the sign of one output is kept");
-        let findings = self.findings(domain);
-        let is_needed = |(demand, decision): (&Demand, &Option<Decision>)| {
-            *demand != Demand::Nothing && !matches!(decision, Some(Decision::Operand(_)))
-        };
-        let needed: Vec<bool> = findings.demands.iter().zip(&findings.decisions).map(is_needed).collect();
-        let kept = needed.iter().filter(|needed| **needed).count();
-        let is_open = |(node, (decision, needed)): (&Node, (&Option<Decision>, &bool))| {
-            *needed && decision.is_none() && node.may_be_decided()
-        };
-        let has_branches = || self.nodes.iter().zip(findings.decisions.iter().zip(&needed)).any(is_open);
-        let loses_branches = || self.has_branches() && !has_branches();
+        let (findings, asked) = self.findings(domain);
+        let kept = asked.ids().filter(|id| !findings.is_passed(*id)).count();
+        let is_open =
+            |id: NodeId| findings.decisions[id.index()].is_none() && self.nodes[id.index()].may_be_decided();
+        let loses_branches = || self.has_branches() && !asked.ids().any(is_open);
         let is_worthwhile = kept as f64 <= WORTHWHILE * self.nodes.len() as f64 || loses_branches();
-        is_worthwhile.then(|| self.rebuilt(&findings.decisions, &needed, kept))
+        is_worthwhile.then(|| self.rebuilt((&findings, &asked), kept))
     }
 
     /// Whether it holds an operation that a box may decide.
@@ -102,21 +99,21 @@ impl Program {
     }
 
     /// What a box decides: enclosures from the arguments on, and decisions from the output back to what is asked for.
-    fn findings(&self, domain: [Interval; 3]) -> Findings {
+    fn findings(&self, domain: [Interval; 3]) -> (Findings, Needed) {
         let mut findings = Findings {
             enclosures: self.enclosures(domain),
             demands: vec![Demand::Nothing; self.nodes.len()],
             decisions: vec![None; self.nodes.len()],
         };
+        let mut asked = Needed::none(self);
         findings.demands[self.outputs[0].index()] = Demand::Side(0.0);
-        for (id, node) in self.iter().rev() {
-            if let (Node::Apply(operation, operands), true) =
-                (node, findings.demands[id.index()] != Demand::Nothing)
-            {
-                findings.decide(self, id, *operation, operands);
+        asked.insert(self.outputs[0]);
+        asked.spread(|asked, id| {
+            if let Node::Apply(operation, operands) = self.node(id) {
+                findings.decide((self, asked), id, operation, &operands);
             }
-        }
-        findings
+        });
+        (findings, asked)
     }
 
     /// Encloses each node over a box.
@@ -130,7 +127,20 @@ impl Program {
                 }
                 Node::Constant(constant) => Decorated::constant(constant.enclosure()),
                 Node::Apply(operation, operands) => {
-                    operation.extension().of(operands.map(|operand| enclosures[operand.index()]))
+                    let of = |place: usize| enclosures[operands[place].index()];
+                    // The commonest are not called by the table: hundreds of thousands of nodes are enclosed to shorten a large formula in all places.
+                    match operation {
+                        Operation::Add => add(of(0), of(1)),
+                        Operation::Subtract => subtract(of(0), of(1)),
+                        Operation::Multiply => multiply(of(0), of(1)),
+                        Operation::Minimum => minimum(of(0), of(1)),
+                        Operation::Maximum => maximum(of(0), of(1)),
+                        _ => match operation.extension() {
+                            Extension::Unary(extend) => extend(of(0)),
+                            Extension::Binary(extend) => extend(of(0), of(1)),
+                            Extension::Ternary(extend) => extend(of(0), of(1), of(2)),
+                        },
+                    }
                 }
             });
         }
@@ -139,33 +149,33 @@ impl Program {
 
     /// The program with the decided operations replaced, as far as it is needed, and constants folded. Nodes are not compared
     /// with each other and no rules are applied, for this is done for places by the thousand, and takes longer than they run.
-    fn rebuilt(&self, decisions: &[Option<Decision>], needed: &[bool], count: usize) -> Self {
+    fn rebuilt(&self, (findings, asked): (&Findings, &Needed), count: usize) -> Self {
         let mut program = Self { nodes: Vec::with_capacity(count), ..Self::new() };
         let mut places = vec![NodeId(0); self.nodes.len()];
         let mut is_folded = false;
-        for (index, node) in self.nodes.iter().enumerate() {
-            let decision = decisions[index];
+        for id in asked.ids() {
+            let (node, decision) = (self.node(id), findings.decisions[id.index()]);
             if let (Some(Decision::Operand(number)), Node::Apply(_, operands)) = (decision, node) {
-                places[index] = places[operands[number].index()];
-            } else if needed[index] {
-                let node = node.with_operands(|operand| places[operand.index()]);
-                let node = match (decision, node) {
-                    (Some(Decision::Constant(value)), _) => Node::Constant(Constant::exact(value)),
-                    (Some(Decision::Negated), Node::Apply(_, operands)) => {
-                        Node::Apply(Operation::Negate, [operands[0]; 3])
-                    }
-                    _ => node,
-                };
-                let folded = match node {
-                    Node::Apply(operation, operands) => {
-                        folded(&program, operation, &operands[..operation.arity()])
-                    }
-                    _ => None,
-                };
-                is_folded |= folded.is_some();
-                places[index] = NodeId(program.nodes.len() as u32);
-                program.nodes.push(folded.map_or(node, Node::Constant));
+                places[id.index()] = places[operands[number].index()];
+                continue;
             }
+            let node = node.with_operands(|operand| places[operand.index()]);
+            let node = match (decision, node) {
+                (Some(Decision::Constant(value)), _) => Node::Constant(Constant::exact(value)),
+                (Some(Decision::Negated), Node::Apply(_, operands)) => {
+                    Node::Apply(Operation::Negate, [operands[0]; 3])
+                }
+                _ => node,
+            };
+            let folded = match node {
+                Node::Apply(operation, operands) => {
+                    folded(&program, operation, &operands[..operation.arity()])
+                }
+                _ => None,
+            };
+            is_folded |= folded.is_some();
+            places[id.index()] = NodeId(program.nodes.len() as u32);
+            program.nodes.push(folded.map_or(node, Node::Constant));
         }
         program.outputs = self.outputs.iter().map(|output| places[output.index()]).collect();
         if is_folded { program.pruned() } else { program }
@@ -184,8 +194,19 @@ impl Node {
 }
 
 impl Findings {
+    /// Whether a node is one of its operands.
+    fn is_passed(&self, id: NodeId) -> bool {
+        matches!(self.decisions[id.index()], Some(Decision::Operand(_)))
+    }
+
     /// Decides a node, and notes what that asks of its operands.
-    fn decide(&mut self, program: &Program, id: NodeId, operation: Operation, operands: &[NodeId; 3]) {
+    fn decide(
+        &mut self,
+        (program, needed): (&Program, &mut Needed),
+        id: NodeId,
+        operation: Operation,
+        operands: &[NodeId; 3],
+    ) {
         use Operation as O;
         let demand = self.demands[id.index()];
         let enclosures = operands.map(|operand| self.enclosures[operand.index()]);
@@ -225,6 +246,7 @@ impl Findings {
         for (number, demand) in asked {
             let asked = &mut self.demands[operands[*number].index()];
             *asked = asked.and(*demand);
+            needed.insert(operands[*number]);
         }
     }
 }

@@ -36,6 +36,9 @@ const LONG: f64 = 1.5;
 /// Beams of so many columns and rows are not cut further, and left to their rays where F is not monotone.
 pub(super) const SMALLEST: usize = 2;
 
+/// For how many kernels there is room before memory is asked for again. In tiles of large models some hundreds get numbers.
+const NUMBERED: usize = 256;
+
 /// How many boxes may be enclosed for each ray of a tile before the rest is left to single rays.
 const WORK_LIMIT: u64 = 64;
 
@@ -148,7 +151,9 @@ impl<'a> Subdivision<'a> {
         memory.attempts = Attempts::default();
         memory.open.clear();
         memory.open.resize(tile.len(), true);
-        let kernels = vec![Arc::clone(&certified.kernels)];
+        let (mut kernels, mut faces) = (Vec::with_capacity(NUMBERED), Vec::with_capacity(NUMBERED));
+        kernels.push(Arc::clone(&certified.kernels));
+        faces.push(Known::Nothing);
         let work_left = WORK_LIMIT * tile.len() as u64;
         Some(Self {
             certified,
@@ -158,7 +163,7 @@ impl<'a> Subdivision<'a> {
             normals,
             memory,
             kernels,
-            faces: vec![Known::Nothing],
+            faces,
             work_left,
             least_overlap: 0.0,
         })
