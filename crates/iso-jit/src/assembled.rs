@@ -38,7 +38,7 @@ impl Engine for Assembler {
     }
 
     fn boxes(&self, program: &Program) -> Result<Arc<dyn BoxKernel>, CompileError> {
-        match Assembled::new(&self.pieces, &program.pruned()) {
+        match Assembled::new(&self.pieces, program) {
             Ok(kernel) => Ok(Arc::new(kernel)),
             Err(_) => Interpreter.boxes(program),
         }
@@ -80,7 +80,7 @@ pub(crate) struct Assembled {
 }
 
 impl Assembled {
-    /// Assembles `program`, every node of which some output needs.
+    /// Assembles `program`. What no output needs is computed as well.
     ///
     /// # Errors
     /// When a piece cannot be compiled, or the program has more nodes than anybody's memory holds.
@@ -89,7 +89,7 @@ impl Assembled {
         if given > allowed {
             return Err(CompileError::TooLarge { engine: NAME, given, allowed });
         }
-        let Domain { ranges, .. } = Domain::near(program);
+        let ranges = program.enclosures([Interval { lo: -Domain::NEAR, hi: Domain::NEAR }; 3]);
         let wanted = program.iter().filter_map(|(id, node)| match node {
             Node::Apply(operation, operands) => {
                 Some(Piece::new(*operation, operands.map(|id| ranges[id.index()]), ranges[id.index()]))

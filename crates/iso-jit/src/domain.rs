@@ -111,11 +111,6 @@ impl Domain {
     /// The reach of a domain that holds all but unusual boxes.
     pub(crate) const NEAR: f64 = (1u64 << 16) as f64;
 
-    /// The domain of that reach, in which nothing is assumed.
-    pub(crate) fn near(program: &Program) -> Self {
-        Self::reaching(program, Self::NEAR, false)
-    }
-
     /// How many values are common.
     fn common(&self) -> usize {
         self.ranges.iter().filter(|range| range.decoration == Common).count()

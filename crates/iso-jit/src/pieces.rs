@@ -1,6 +1,7 @@
 //! Single operations over two boxes as native functions, compiled when first needed and shared by all kernels that are
 //! [assembled](crate::assembled) from them.
 
+use std::hash::{Hash, Hasher};
 use std::sync::{Mutex, PoisonError};
 
 use cranelift_codegen::Context;
@@ -61,13 +62,24 @@ impl Kind {
 }
 
 /// An operation on values of some kinds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Piece {
     operation: Operation,
     /// The exponent of an integer power.
     exponent: Option<u32>,
     operands: [Kind; 3],
     result: Kind,
+}
+
+/// By a single number, for every operation of every kernel that is assembled is looked up.
+impl Hash for Piece {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        let of_kind = |kind: Kind| kind.sign as u64 * 2 + u64::from(kind.is_common);
+        let [a, b, c] = self.operands.map(of_kind);
+        let kinds = [a, b, c, of_kind(self.result)].into_iter().fold(0, |kinds, kind| 8 * kinds + kind);
+        let operation = self.operation.index() as u64;
+        state.write_u64((u64::from(self.exponent.unwrap_or(0)) << 32) | (operation << 16) | kinds);
+    }
 }
 
 impl Piece {

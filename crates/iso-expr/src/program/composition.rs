@@ -36,19 +36,10 @@ pub enum Composition<F> {
 }
 
 impl<F> Composition<F> {
-    /// The same of references to the functions.
-    pub fn as_ref(&self) -> Composition<&F> {
-        match self {
-            Self::Extreme(extreme, all) => Composition::Extreme(*extreme, all.iter().collect()),
-            Self::Choice { by, below, above } => Composition::Choice { by, below, above },
-            Self::Within { function, margin } => Composition::Within { function, margin },
-        }
-    }
-
     /// The same of what `make` makes of the functions.
-    pub fn map<G>(self, mut make: impl FnMut(F) -> G) -> Composition<G> {
+    pub fn of_each<G>(&self, mut make: impl FnMut(&F) -> G) -> Composition<G> {
         match self {
-            Self::Extreme(extreme, all) => Composition::Extreme(extreme, all.into_iter().map(make).collect()),
+            Self::Extreme(extreme, all) => Composition::Extreme(*extreme, all.iter().map(make).collect()),
             Self::Choice { by, below, above } => {
                 Composition::Choice { by: make(by), below: make(below), above: make(above) }
             }

@@ -116,8 +116,11 @@ impl Program {
         (findings, asked)
     }
 
-    /// Encloses each node over a box.
-    pub(super) fn enclosures(&self, domain: [Interval; 3]) -> Vec<Decorated> {
+    /// The enclosure of each node over the box `domain`, in the order of the nodes.
+    ///
+    /// # Panics
+    /// When the program has other arguments than x, y and z.
+    pub fn enclosures(&self, domain: [Interval; 3]) -> Vec<Decorated> {
         let mut enclosures: Vec<Decorated> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
             enclosures.push(match *node {

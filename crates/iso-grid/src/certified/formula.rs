@@ -45,6 +45,8 @@ pub(super) struct Formula {
     least_with_forms: usize,
     /// Whether its forms are asked for. That depends on the formula alone, so that all engines prove the same.
     has_forms: bool,
+    /// Whether its second derivatives are asked for.
+    has_hessian: bool,
     /// How many operations each kernel takes, counted when first asked for.
     operations: [OnceLock<u64>; Kernel::ALL.len()],
     /// How it is made of others everywhere, found when first asked for; `None` when it has no kinks.
@@ -68,21 +70,21 @@ impl Default for Formulas {
 
 impl Formulas {
     /// The one with this program, which is what is left of `outer`. It is kept while there is room.
-    pub(super) fn one_of(&self, program: Program, outer: &Formula) -> Arc<Formula> {
-        let patience = Patience::limited(&program);
+    pub(super) fn one_of(&self, program: &Program, outer: &Formula) -> Arc<Formula> {
+        let patience = Patience::limited(program);
         self.one_with(program, outer, patience)
     }
 
-    fn one_with(&self, program: Program, outer: &Formula, patience: Patience) -> Arc<Formula> {
-        let hash = FxBuildHasher.hash_one(&program);
+    fn one_with(&self, program: &Program, outer: &Formula, patience: Patience) -> Arc<Formula> {
+        let hash = FxBuildHasher.hash_one(program);
         // Formulas are only ever put in whole.
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         let alike = known.entry(hash).or_default();
-        if let Some(formula) = alike.iter().find(|formula| *formula.surface.program() == program) {
+        if let Some(formula) = alike.iter().find(|formula| formula.surface.program() == program) {
             return Arc::clone(formula);
         }
         let operations = program.operations() as u64;
-        let surface = outer.surface.reduced_to(program);
+        let surface = outer.surface.reduced_to(program.clone());
         let formula = Arc::new(Formula::new(surface, patience, outer.least_with_forms));
         if self.have_room() {
             self.room.update(Ordering::Relaxed, Ordering::Relaxed, |room| room.saturating_sub(operations));
@@ -165,6 +167,7 @@ impl Formula {
         Self {
             least_with_forms,
             has_forms: program.operations() >= least_with_forms && Kernel::Forms.pays(program),
+            has_hessian: Kernel::HessianEnclosures.pays(program),
             patience_for: Kernel::ALL.map(|_| Patience::limited(surface.program())),
             surface: Arc::new(surface),
             compiled: OnceLock::new(),
@@ -202,6 +205,11 @@ impl Formula {
         self.has_forms
     }
 
+    /// Whether a kernel over boxes [pays](Kernel::pays).
+    pub(super) fn may_ask(&self, kernel: Kernel) -> bool {
+        kernel != Kernel::HessianEnclosures || self.has_hessian
+    }
+
     /// How many operations a kernel takes.
     pub(super) fn operations(&self, kernel: Kernel) -> u64 {
         let operations = || self.surface.program_of(kernel).operations() as u64;
@@ -211,16 +219,16 @@ impl Formula {
     /// How it is made of others everywhere, if it has kinks.
     pub(super) fn composition(&self, formulas: &Formulas) -> Option<&Composition<Arc<Self>>> {
         let find = || {
-            let one_of = |program| formulas.one_of(program, self);
+            let one_of = |program: &Program| formulas.one_of(program, self);
             Some(match self.program().composition(LONGEST_CHOICE)? {
-                Composition::Within { function, margin }
-                    if self.is_whole && !Kernel::are_left_to_places(&function) =>
+                Composition::Within { ref function, ref margin }
+                    if self.is_whole && !Kernel::are_left_to_places(function) =>
                 {
                     // It is asked for wherever anything is to be seen.
                     let function = formulas.one_with(function, self, Patience::none());
                     Composition::Within { function, margin: one_of(margin) }
                 }
-                composition => composition.map(one_of),
+                composition => composition.of_each(one_of),
             })
         };
         self.composition.get_or_init(find).as_ref()

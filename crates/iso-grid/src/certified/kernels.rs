@@ -63,14 +63,14 @@ impl Kernels {
     pub(super) fn shortened(&self, formulas: &Formulas, domain: Bounds) -> Option<Self> {
         let domain = [0, 1, 2].map(|axis| domain[axis].intersection(self.domain[axis]));
         let program = self.program().shortened(domain)?;
-        Some(Self::on(domain, formulas.one_of(program, &self.formula)))
+        Some(Self::on(domain, formulas.one_of(&program, &self.formula)))
     }
 
     /// Kernels of the functions that F is made of wherever these hold, if it has kinks there.
     pub(super) fn composition(&self, formulas: &Formulas) -> Option<&Composition<Arc<Self>>> {
         let find = || {
-            let composition = self.formula.composition(formulas)?.as_ref();
-            Some(composition.map(|formula| Arc::new(Self::on(self.domain, Arc::clone(formula)))))
+            let composition = self.formula.composition(formulas)?;
+            Some(composition.of_each(|formula| Arc::new(Self::on(self.domain, Arc::clone(formula)))))
         };
         self.composition.get_or_init(find).as_ref()
     }
@@ -149,9 +149,14 @@ impl Kernels {
         self.formula.over_boxes(Kernel::GradientEnclosures)
     }
 
+    /// Whether a kernel over boxes pays for the function.
+    pub(super) fn may_ask(&self, kernel: Kernel) -> bool {
+        self.formula.may_ask(kernel)
+    }
+
     /// One of the kernels over boxes; `None` where it does not pay.
     pub(super) fn over_boxes(&self, kernel: Kernel) -> Option<&dyn BoxKernel> {
-        kernel.pays(self.program()).then(|| self.formula.over_boxes(kernel))
+        self.may_ask(kernel).then(|| self.formula.over_boxes(kernel))
     }
 
     /// Whether affine forms of F and its derivatives are asked for.

@@ -178,9 +178,13 @@ fn curvature(beam: &Beam, hessian: [[Interval; 3]; 3]) -> Interval {
         Interval::point(middle).plus(Interval { lo: -radius, hi: radius })
     });
     let mut sum = Interval::point(0.0);
-    for (row, a) in hessian.into_iter().zip(directions) {
-        for (entry, b) in row.into_iter().zip(directions) {
-            sum = sum.plus(entry.times(a.times(b)));
+    for (number, row) in hessian.into_iter().enumerate() {
+        let along = directions[number];
+        sum = sum.plus(row[number].times(along.times(along)));
+        for other in number + 1..3 {
+            // Twice, for the matrix is symmetric.
+            let Interval { lo, hi } = row[other].times(along.times(directions[other]));
+            sum = sum.plus(Interval { lo: 2.0 * lo, hi: 2.0 * hi });
         }
     }
     sum

@@ -160,7 +160,7 @@ impl Subdivision<'_> {
         // What simplifying cuts anew is followed as it is: there may be thousands of such cuts inside each other.
         let found = found
             .filter(|faces| !matches!(faces, Composition::Within { function, .. } if function.are_cut()));
-        let found = found.map(|faces| Rc::new(faces.as_ref().map(|face| self.number_of(Arc::clone(face)))));
+        let found = found.map(|faces| Rc::new(faces.of_each(|face| self.number_of(Arc::clone(face)))));
         self.faces[kernels as usize] = Known::Everywhere(found.clone());
         found
     }

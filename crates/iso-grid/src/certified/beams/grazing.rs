@@ -117,7 +117,7 @@ impl Subdivision<'_> {
     fn bends_evenly(&self, kernels: u32) -> bool {
         let kernels = self.kernels(kernels);
         let [first, second] = [Kernel::GradientEnclosures, Kernel::HessianEnclosures];
-        second.pays(kernels.program()) && kernels.operations(first) == kernels.operations(second)
+        kernels.may_ask(second) && kernels.operations(first) == kernels.operations(second)
     }
 
     /// Whether a stretch of a beam is not much longer than the beam is wide.

@@ -98,14 +98,19 @@ impl Combinations {
             is_cut: matches!(made, Made::Within(_)),
         };
         made.note_faces(&mut found.are_met);
-        for number in 0..3_usize.pow(faces as u32) {
-            let mut rest = number;
-            let mut signs = [0.0; MOST];
+        let mut signs = [0.0; MOST];
+        signs[..faces].fill(-1.0);
+        // In the order of their places: one after the other, as a number of three digits is counted up.
+        let first = place_of(&signs);
+        for of in &mut found.of[first..first + 3_usize.pow(faces as u32)] {
+            *of = made.sign(&signs);
             for sign in &mut signs[..faces] {
-                *sign = (rest % 3) as f64 - 1.0;
-                rest /= 3;
+                if *sign < 1.0 {
+                    *sign += 1.0;
+                    break;
+                }
+                *sign = -1.0;
             }
-            found.of[place_of(&signs)] = made.sign(&signs);
         }
         if let Made::Of(extreme, parts) = made {
             for part in parts {

@@ -148,7 +148,6 @@ impl Subdivision<'_> {
         (extreme, faces): (Extreme, &[u32]),
         slabs: &[Slab],
     ) -> [Left; BATCH] {
-        let is_defined = self.kernels(number).are_defined_everywhere();
         // What may be zero or undefined is put behind what is there for functions around this one.
         let first = self.memory.left.len();
         let mut are_decided = [false; BATCH];
@@ -171,6 +170,7 @@ impl Subdivision<'_> {
             let mut open =
                 self.memory.left[first..].iter().filter(|(of, _)| *of == slab).map(|(_, face)| *face);
             if is_decided {
+                let is_defined = self.kernels(number).are_defined_everywhere();
                 *left = Left::Sign { sign: deciding(extreme), is_defined };
             } else if let Some(face) = open.next() {
                 let others: Vec<_> = open.collect();
