@@ -90,13 +90,14 @@ impl Assembled {
             return Err(CompileError::TooLarge { engine: NAME, given, allowed });
         }
         let ranges = program.enclosures([Interval { lo: -Domain::NEAR, hi: Domain::NEAR }; 3]);
-        let wanted = program.iter().filter_map(|(id, node)| match node {
+        let piece = |(id, node): (NodeId, &Node)| match node {
             Node::Apply(operation, operands) => {
                 Some(Piece::new(*operation, operands.map(|id| ranges[id.index()]), ranges[id.index()]))
             }
             _ => None,
-        });
-        let mut functions = pieces.functions(wanted)?.into_iter();
+        };
+        let wanted: Vec<Piece> = program.iter().filter_map(piece).collect();
+        let mut functions = pieces.functions(&wanted)?.into_iter();
         let nodes = || program.nodes().iter().zip(&ranges);
         let is_constant = |(node, _): &(&Node, &Decorated)| matches!(node, Node::Constant(_));
         let mut constants = Vec::with_capacity(SIZE * nodes().filter(is_constant).count());

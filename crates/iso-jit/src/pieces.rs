@@ -2,7 +2,7 @@
 //! [assembled](crate::assembled) from them.
 
 use std::hash::{Hash, Hasher};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{PoisonError, RwLock};
 
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::{AbiParam, InstBuilder, MemFlagsData, Signature, Value, types};
@@ -187,28 +187,38 @@ fn access() -> MemFlagsData {
 /// All pieces so far. None is given back before all are.
 pub(crate) struct Pieces {
     host: Host,
-    compiled: Mutex<FxHashMap<Piece, Compiled<Apply>>>,
+    compiled: RwLock<FxHashMap<Piece, Compiled<Apply>>>,
 }
 
 impl Pieces {
     /// None at all.
     pub(crate) fn new(host: Host) -> Self {
-        Self { host, compiled: Mutex::default() }
+        Self { host, compiled: RwLock::default() }
     }
 
     /// The functions of some pieces, which are compiled if need be.
-    pub(crate) fn functions(&self, pieces: impl Iterator<Item = Piece>) -> Result<Vec<Apply>, CompileError> {
+    pub(crate) fn functions(&self, pieces: &[Piece]) -> Result<Vec<Apply>, CompileError> {
+        self.known(pieces).map_or_else(|| self.compile(pieces), Ok)
+    }
+
+    /// The functions, if all are known, as they soon are: then threads do not wait for each other.
+    fn known(&self, pieces: &[Piece]) -> Option<Vec<Apply>> {
         // Pieces are only ever put in whole.
-        let mut compiled = self.compiled.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut function = |piece: Piece| {
-            if let Some(known) = compiled.get(&piece) {
+        let compiled = self.compiled.read().unwrap_or_else(PoisonError::into_inner);
+        pieces.iter().map(|piece| compiled.get(piece).map(|known| known.function)).collect()
+    }
+
+    fn compile(&self, pieces: &[Piece]) -> Result<Vec<Apply>, CompileError> {
+        let mut compiled = self.compiled.write().unwrap_or_else(PoisonError::into_inner);
+        let mut function = |piece: &Piece| {
+            if let Some(known) = compiled.get(piece) {
                 return Ok(known.function);
             }
-            let new = Compiled::new(self.host.careful(), &mut Context::new(), &piece)?;
+            let new = Compiled::new(self.host.careful(), &mut Context::new(), piece)?;
             let function = new.function;
-            compiled.insert(piece, new);
+            compiled.insert(*piece, new);
             Ok(function)
         };
-        pieces.map(&mut function).collect()
+        pieces.iter().map(&mut function).collect()
     }
 }

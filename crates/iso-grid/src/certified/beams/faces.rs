@@ -16,7 +16,7 @@ use super::packet::Packet;
 use super::pixels::Pixels;
 use super::subdivision::{Faces, Known, Part, Subdivision};
 use crate::area::Area;
-use crate::certified::kernels::bounds_between;
+use crate::certified::kernels::{Kernels, bounds_between};
 use crate::certified::side::side;
 use crate::lanes::{Lanes, Row, parts};
 use crate::{Kernel, Tile};
@@ -160,9 +160,19 @@ impl Subdivision<'_> {
         // What simplifying cuts anew is followed as it is: there may be thousands of such cuts inside each other.
         let found = found
             .filter(|faces| !matches!(faces, Composition::Within { function, .. } if function.are_cut()));
-        let found = found.map(|faces| Rc::new(faces.of_each(|face| self.number_of(Arc::clone(face)))));
+        let found = found.map(|faces| Rc::new(faces.of_each(|face| self.number_of_face(face))));
         self.faces[kernels as usize] = Known::Everywhere(found.clone());
         found
+    }
+
+    /// The number of kernels of a function that others are made of, the same wherever it is one, as nothing is concluded from where they hold.
+    fn number_of_face(&mut self, face: &Arc<Kernels>) -> u32 {
+        if let Some(number) = self.memory.numbers.get(&face.identity()) {
+            return *number;
+        }
+        let number = self.number_of(Arc::clone(face));
+        self.memory.numbers.insert(face.identity(), number);
+        number
     }
 
     /// What a function with kinks comes to on a part, and the functions of which it is made there; `None` where it may be undefined.

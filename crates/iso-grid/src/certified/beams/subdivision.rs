@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use iso_expr::{Composition, Decorated};
+use rustc_hash::FxHashMap;
 
 use super::beam::{Beam, count_in};
 use super::edges::Meeting;
@@ -80,6 +81,8 @@ pub(crate) struct Memory {
     /// The beams that the tile was cut into so far.
     pub(super) beams: Vec<Beam>,
     pub(super) slabs: Vec<Slab>,
+    /// The numbers of functions that others are made of, by their [identities](Kernels::identity).
+    pub(super) numbers: FxHashMap<usize, u32>,
     /// Functions that are left of others on slabs, by the slab's number among those that are looked at.
     pub(super) left: Vec<(usize, u32)>,
     pub(super) attempts: Attempts,
@@ -147,6 +150,7 @@ impl<'a> Subdivision<'a> {
         memory.beams.push(beam);
         memory.met.clear();
         memory.roundings.clear();
+        memory.numbers.clear();
         memory.room = AROUND;
         memory.attempts = Attempts::default();
         memory.open.clear();
