@@ -1,6 +1,7 @@
 pub(super) mod twofold;
 
 use super::*;
+use crate::random::Random;
 use crate::{Ast, Engine, Interpreter, Scratch};
 
 fn polynomial() -> Program {
@@ -118,4 +119,28 @@ fn second_derivatives_are_those_of_calculus() {
             assert!((found - expected).abs() < 1e-13 * (1.0 + expected.abs()), "output {place}: {found}");
         }
     }
+}
+
+/// So that nothing is computed twice, in programs of more nodes than stand in one block of bits.
+#[test]
+fn derivatives_hold_equal_nodes_only_until_they_are_simplified() {
+    let mut random = Random::new(0x6472_6166);
+    let are_unequal = |program: &Program| {
+        let mut known = std::collections::HashSet::new();
+        program.nodes().iter().all(|node| known.insert(*node))
+    };
+    let mut drafts_with_equal_nodes = 0;
+    for _ in 0..200 {
+        let program = random.program(40).simplified();
+        let gradient = program.with_gradient();
+        let drafts =
+            [gradient.simplified().with_hessian(), gradient, program.with_slope(), program.with_rounding()];
+        for draft in &drafts {
+            drafts_with_equal_nodes += usize::from(!are_unequal(draft));
+            let simplified = draft.simplified();
+            assert!(are_unequal(&simplified), "{simplified}");
+            assert_eq!(simplified.pruned(), simplified, "what no output needs is left");
+        }
+    }
+    assert!(drafts_with_equal_nodes > 0, "no draft tells");
 }
