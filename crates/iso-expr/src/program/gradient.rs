@@ -4,9 +4,6 @@ use super::{Argument, Axis, NodeId, Program};
 use crate::Node;
 use crate::operation::Chain;
 
-/// How many times as many nodes derivatives take, about.
-pub(super) const EXPECTED: usize = 3;
-
 impl Program {
     /// The program that computes this one's only output F, then ∂F/∂x, ∂F/∂y and ∂F/∂z.
     ///
@@ -59,7 +56,7 @@ impl Program {
         &self,
         of_argument: impl Fn(&mut Self, Argument) -> [Option<NodeId>; N],
     ) -> Derivatives<N> {
-        let mut program = Self::draft(EXPECTED * self.nodes.len());
+        let mut program = Self::draft_from(self);
         // For each node of this program, in the same order.
         let mut places: Vec<NodeId> = Vec::with_capacity(self.nodes.len());
         let mut gradients: Vec<[Option<NodeId>; N]> = Vec::with_capacity(self.nodes.len());

@@ -149,9 +149,9 @@ impl Program {
         Self::default()
     }
 
-    /// The same for nodes of which many are to be simplified away, so many in all.
-    fn draft(nodes: usize) -> Self {
-        Self { nodes: Vec::with_capacity(nodes), is_draft: true, ..Self::new() }
+    /// The same for derivatives of another one, which take about three times as many nodes until they are simplified.
+    fn draft_from(other: &Self) -> Self {
+        Self { nodes: Vec::with_capacity(3 * other.nodes.len()), is_draft: true, ..Self::new() }
     }
 
     /// All nodes, operands before the nodes that use them.

@@ -1,6 +1,5 @@
 //! How far rounding moves the value of a program: a bound that is a program itself.
 
-use super::gradient::EXPECTED;
 use super::{NodeId, Program};
 use crate::operation::Chain;
 use crate::{Node, Operation};
@@ -30,7 +29,7 @@ impl Program {
     /// When the program has not just one output.
     pub fn with_rounding(&self) -> Self {
         assert_eq!(self.outputs.len(), 1, "the rounding of one function is bounded at a time");
-        let mut program = Self::draft(EXPECTED * self.nodes.len());
+        let mut program = Self::draft_from(self);
         let mut places: Vec<NodeId> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
             let copy = node.with_operands(|operand| places[operand.index()]);

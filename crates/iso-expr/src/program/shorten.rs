@@ -3,7 +3,6 @@
 use super::needed::Needed;
 use super::simplify::folded;
 use super::{Node, NodeId, Program};
-use crate::interval::Extension;
 use crate::interval::extension::{add, maximum, minimum, multiply, subtract};
 use crate::{Constant, Decorated, Decoration, Interval, Operation};
 
@@ -138,11 +137,7 @@ impl Program {
                         Operation::Multiply => multiply(of(0), of(1)),
                         Operation::Minimum => minimum(of(0), of(1)),
                         Operation::Maximum => maximum(of(0), of(1)),
-                        _ => match operation.extension() {
-                            Extension::Unary(extend) => extend(of(0)),
-                            Extension::Binary(extend) => extend(of(0), of(1)),
-                            Extension::Ternary(extend) => extend(of(0), of(1), of(2)),
-                        },
+                        _ => operation.extension().of([0, 1, 2].map(of)),
                     }
                 }
             });

@@ -30,7 +30,7 @@ pub(super) struct Formula {
     surface: Arc<Surface>,
     /// The same as native code, if it was asked for often.
     compiled: OnceLock<Arc<Surface>>,
-    patience: Apart<AllPatience>,
+    patience: AllPatience,
     /// Whether it is F as it is everywhere.
     is_whole: bool,
     has_branches: bool,
@@ -50,10 +50,9 @@ pub(super) struct Formula {
     composition: OnceLock<Option<Composition<Arc<Formula>>>>,
 }
 
-/// What threads write by turns, apart from what all of them read, so that each keeps that in its cache. Processors fetch lines of 64 bytes by twos.
+/// How many operations may still be asked for. Threads write it by turns; it stands apart from what all of them read, so that each keeps that in
+/// its cache. Processors fetch lines of 64 bytes by twos.
 #[repr(align(128))]
-struct Apart<T>(T);
-
 struct AllPatience {
     /// Before the formula is compiled.
     whole: Patience,
@@ -183,7 +182,7 @@ impl Formula {
             has_hessian: Kernel::HessianEnclosures.pays(program),
             surface: Arc::new(surface),
             compiled: OnceLock::new(),
-            patience: Apart(AllPatience { whole: patience, of_kernels }),
+            patience: AllPatience { whole: patience, of_kernels },
             is_whole: false,
             has_branches,
             is_cut,
@@ -267,7 +266,7 @@ impl Formula {
     pub(super) fn wear(&self, kernel: Kernel, operations: u64) {
         // Counted so, a bear of 662 operations (Keeter's benchmark of 2020) takes a twelfth fewer instructions.
         let operations = operations * if kernel.makes_forms() { INTERPRETED } else { 1 };
-        if self.patience.0.whole.wear(operations) {
+        if self.patience.whole.wear(operations) {
             let surface = self.surface.made_for_many_runs();
             if Kernel::of_proofs(self.has_forms).all(|kernel| surface.compile(kernel).is_ok()) {
                 self.compiled.get_or_init(|| Arc::new(surface));
@@ -275,7 +274,7 @@ impl Formula {
             }
         }
         if !kernel.is_compiled_ahead(self.has_forms)
-            && self.patience.0.of_kernels[kernel as usize].wear(operations)
+            && self.patience.of_kernels[kernel as usize].wear(operations)
         {
             self.compile_if_often(kernel);
         }
@@ -283,8 +282,8 @@ impl Formula {
 
     /// Compiles a kernel that was asked for often, if those are that are compiled ahead.
     fn compile_if_often(&self, kernel: Kernel) {
-        let is_native = self.compiled.get().is_some() || self.patience.0.whole.is_endless();
-        if is_native && self.patience.0.of_kernels[kernel as usize].is_spent() {
+        let is_native = self.compiled.get().is_some() || self.patience.whole.is_endless();
+        if is_native && self.patience.of_kernels[kernel as usize].is_spent() {
             // Where it cannot be compiled it stays as it is.
             let _ = self.surface().compile(kernel);
         }

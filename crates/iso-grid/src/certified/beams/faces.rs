@@ -165,7 +165,7 @@ impl Subdivision<'_> {
         found
     }
 
-    /// The number of kernels of a function that others are made of, the same wherever it is one, as nothing is concluded from where they hold.
+    /// The number of kernels of a function that others are made of, the same in all places: where F has its sign is said by a part, not by them.
     fn number_of_face(&mut self, face: &Arc<Kernels>) -> u32 {
         if let Some(number) = self.memory.numbers.get(&face.identity()) {
             return *number;
