@@ -66,6 +66,8 @@ impl Need {
 pub(super) struct Sight {
     /// One over the middle of the slopes of F.
     pub(super) inverse: f64,
+    /// How the slope changes with t, about.
+    pub(super) turn: f64,
     /// How far that is from one over any slope, as part of it.
     pub(super) unevenness: f64,
     /// How much a slope may differ from the one a unit of t away, as part of it, about.
@@ -114,7 +116,7 @@ impl Bundle {
 
     /// Begins with its open rays, where they are likely to have a root; says whether there are any.
     #[inline(always)]
-    fn begin<S: Simd>(&mut self, simd: S, tile: &Tile<'_>, start: &Start<'_>) -> bool {
+    fn begin<S: Simd>(&mut self, simd: S, tile: &Tile<'_>, (start, sight): (&Start<'_>, &Sight)) -> bool {
         let (columns, rows) = (doubles(&self.columns), doubles(&self.rows));
         let (mut t, width) = (Row::default(), tile.width() as u32);
         for lane in 0..ROW {
@@ -133,21 +135,64 @@ impl Bundle {
         let are_open = most_open.greatest() > 0.0;
         if are_open {
             self.rays = tile.row(simd, &columns, &rows);
-            self.step = [f64::INFINITY; ROW];
+            (self.step, self.inverse) = ([f64::INFINITY; ROW], [sight.inverse; ROW]);
         }
         are_open
     }
 
-    /// One step of the interval Newton method, for all slopes of the part at once, where `values` were computed for F at t. All
-    /// roots in reach lie in its result, and if that lies in reach itself, there is one. Where it is about, the slopes of F at t tell, or
-    /// the last ones. Says what is needed next.
+    /// A step towards the roots, by the values and the slopes of F at t: by Newton's method, bent as slopes are, at first, and then by inverse
+    /// cubic interpolation (Hermite) between there and the last place. By the middle of the part's slopes where F would have one that it does
+    /// not have. Says what is needed next.
     #[inline(always)]
-    fn look<S: Simd>(
+    fn approach<S: Simd>(
         &mut self,
         simd: S,
-        (values, slopes): (&Row, Option<&Row>),
+        [values, slopes]: [&Row; 2],
         (sight, is_first): (&Sight, bool),
     ) -> Need {
+        let all = |number| Lanes::all(simd, number);
+        let (one, middle) = (all(1.0), all(sight.inverse));
+        let most = all(sight.unevenness * sight.inverse.abs());
+        let [last, another] = [Need::Last, Need::Slopes].map(|need| all(f64::from(need as u8)));
+        let mut needed = last;
+        for part in 0..parts::<S>() {
+            let at = |row: &Row| Lanes::of(simd, row, part);
+            let (t, value, before) = (at(&self.t), at(values), at(&self.step));
+            let computed = one / at(slopes);
+            let inverse = (computed - middle).abs().is_at_most(most).select(computed, middle);
+            let linear = value * inverse;
+            let bend = if is_first {
+                -(linear * linear * inverse * all(0.5 * sight.turn))
+            } else {
+                let (last, inverse_there) = (at(&self.value), at(&self.inverse));
+                let per_value = one / (value - last);
+                let (secant, share) = (before * per_value, value * per_value);
+                let change = inverse_there + inverse - (secant + secant);
+                share * (value * (inverse - secant) - last * share * change)
+            };
+            // A bend is a small correction, or is not a number where F was the same before.
+            let is_small = (bend + bend).abs().is_less(linear.abs());
+            let nearer = is_small.select(t - linear + bend, t - linear);
+            let next = nearer.between(at(&self.reach[0]), at(&self.reach[1]));
+            let step = next - t;
+            let change = before * all(sight.bend);
+            let rest = step * step * all(sight.bend) * (change * change).at_most(one);
+            let is_open = at(&self.state).is_same(all(state::OPEN));
+            let is_far = all(NEAR * sight.tolerance).is_less(rest * all(sight.unevenness));
+            needed = (is_open & is_far).select(another, needed);
+            is_open.select(next, t).put(&mut self.t, part);
+            value.put(&mut self.value, part);
+            inverse.put(&mut self.inverse, part);
+            step.put(&mut self.step, part);
+        }
+        Need::of(needed.greatest())
+    }
+
+    /// One step of the interval Newton method, for all slopes of the part at once, where `values` were computed for F at t. All
+    /// roots in reach lie in its result, and if that lies in reach itself, there is one. Where it is about, the last slopes tell. Says what is
+    /// needed next.
+    #[inline(always)]
+    fn conclude<S: Simd>(&mut self, simd: S, values: &Row, sight: &Sight) -> Need {
         let all = |number| Lanes::all(simd, number);
         let [free, open] = [all(state::FREE), all(state::OPEN)];
         let [hit, lost] = [all(state::HIT), all(state::LOST)];
@@ -169,18 +214,11 @@ impl Bundle {
             let is_narrow = (radius + radius).is_at_most(all(sight.tolerance));
             let is_inside = reach[0].is_at_most(root[0]) & root[1].is_at_most(reach[1]);
 
-            let nearer = match slopes {
-                Some(slopes) => self.interpolate((simd, part), [t, value, at(slopes)], (sight, is_first)),
-                None => t - value * at(&self.inverse),
-            };
+            let nearer = t - value * at(&self.inverse);
             let next = nearer.between(reach[0], reach[1]);
-            let (step, before_that) = (next - t, at(&self.step));
+            let (step, since_slopes) = (next - t, at(&self.step));
             // About as far as `next` is from the root, as slopes change.
-            let change = (before_that * all(sight.bend)).abs();
-            let rest = match slopes {
-                Some(_) => step * step * all(sight.bend) * (change * change).between(all(0.0), all(1.0)),
-                None => step.abs() * change,
-            };
+            let rest = (step * since_slopes * all(sight.bend)).abs();
             let is_far = all(NEAR * sight.tolerance).is_less(rest * all(sight.unevenness));
             let moves = step.is_less(all(0.0)) | all(0.0).is_less(step);
 
@@ -191,51 +229,17 @@ impl Bundle {
             let follows = is_found.select(nearer.between(root[0], root[1]), next);
             let follows = was_open.select(follows, t);
             follows.put(&mut self.t, part);
-            if slopes.is_none() {
-                (follows - t).abs().put(&mut self.moved, part);
-            }
+            (follows - t).abs().put(&mut self.moved, part);
             for (end, side) in self.wanted.iter_mut().enumerate() {
                 is_found.select(root[end], wanted[end]).put(side, part);
             }
-            if slopes.is_some() { step } else { before_that + step }.put(&mut self.step, part);
+            (since_slopes + step).put(&mut self.step, part);
             let state = was_open.select(state, before);
             state.put(&mut self.state, part);
             needed =
                 state.is_same(open).select(is_far.select(another, needed.between(last, another)), needed);
         }
         Need::of(needed.greatest())
-    }
-
-    /// About where the root is by the value and the slope of F at t, and at the last place: by Newton's method at first, and then by
-    /// inverse cubic interpolation (Hermite). By the middle of the part's slopes where F would have one that it does not have.
-    #[inline(always)]
-    fn interpolate<S: Simd>(
-        &mut self,
-        (simd, part): (S, usize),
-        [t, value, slope]: [Lanes<S>; 3],
-        (sight, is_first): (&Sight, bool),
-    ) -> Lanes<S> {
-        let [last, before, step] =
-            [&self.value, &self.inverse, &self.step].map(|row| Lanes::of(simd, row, part));
-        let one = Lanes::all(simd, 1.0);
-        let middle = Lanes::all(simd, sight.inverse);
-        let most = Lanes::all(simd, sight.unevenness * sight.inverse.abs());
-        let computed = one / slope;
-        let inverse = (computed - middle).abs().is_at_most(most).select(computed, middle);
-        value.put(&mut self.value, part);
-        inverse.put(&mut self.inverse, part);
-        let linear = value * inverse;
-        if is_first {
-            return t - linear;
-        }
-
-        let per_value = one / (value - last);
-        let (secant, share) = (step * per_value, value * per_value);
-        let bend =
-            share * (value * (inverse - secant) - last * share * (before + inverse - (secant + secant)));
-        // A bend is a small correction, or is not a number where F was the same before.
-        let is_small = (bend + bend).abs().is_less(linear.abs());
-        is_small.select(t - linear + bend, t - linear)
     }
 
     /// Puts the normals of rays in their places that meet the surface within `distance` of where these gradients were taken: their directions,
@@ -302,13 +306,15 @@ impl WithSimd for Pursuit<'_> {
         let mut taken = Taken::default();
         let (mut open, mut count) = ([0; AT_ONCE], 0);
         for (number, bundle) in bundles.iter_mut().enumerate() {
-            if bundle.begin(simd, tile, start) {
+            if bundle.begin(simd, tile, (start, sight)) {
                 open[count] = number;
                 count += 1;
             }
         }
-        let mut need = Need::Slopes;
-        for step in 0..STEPS {
+        // Where the model is as good as what is wanted there is nothing to come nearer to.
+        let mut need = if start.uncertainty() <= sight.tolerance { Need::Last } else { Need::Slopes };
+        let mut is_first = true;
+        for _ in 0..STEPS {
             if count == 0 {
                 break;
             }
@@ -318,8 +324,8 @@ impl WithSimd for Pursuit<'_> {
             }
             let found = match (need, &last) {
                 (Need::Slopes, _) => {
-                    // Those of parallel rays are there since the first step.
-                    let put = if step == 0 || tile.direction().is_none() { count } else { 0 };
+                    // Those of parallel rays are there since the first time.
+                    let put = if is_first || tile.direction().is_none() { count } else { 0 };
                     for (directions, number) in points.rows_of_directions(count).zip(&open[..put]) {
                         for (to, from) in directions.into_iter().zip(&bundles[*number].rays.directions) {
                             *to = *from;
@@ -336,8 +342,12 @@ impl WithSimd for Pursuit<'_> {
             for place in 0..count {
                 let number = open[place];
                 let bundle = &mut bundles[number];
-                let slopes = (need == Need::Slopes).then(|| &rows[count + place]);
-                let next = bundle.look(simd, (&rows[place], slopes), (sight, step == 0));
+                let next = match need {
+                    Need::Slopes => {
+                        bundle.approach(simd, [&rows[place], &rows[count + place]], (sight, is_first))
+                    }
+                    _ => bundle.conclude(simd, &rows[place], sight),
+                };
                 if let (Need::Last, Last::Gradient(_, normals)) = (need, &mut last) {
                     let gradients = [1, 2, 3].map(|axis| &rows[axis * count + place]);
                     bundle.put_normals(simd, (gradients, sight.tolerance), normals);
@@ -348,6 +358,7 @@ impl WithSimd for Pursuit<'_> {
                     far += usize::from(next == Need::Slopes);
                 }
             }
+            is_first &= need != Need::Slopes;
             need = if 2 * far > kept { Need::Slopes } else { Need::Last };
             count = kept;
         }

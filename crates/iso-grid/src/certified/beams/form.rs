@@ -41,22 +41,6 @@ impl Ball {
         Self { middle: form.middle, radius }.widened(f64::MIN_POSITIVE)
     }
 
-    /// The products of vectors, whose components are numbers of affine forms, and the directions of a beam.
-    pub(super) fn along(directions: &Spread, gradient: &[Affine]) -> Self {
-        let direction = directions.middle.to_array();
-        let (mut middle, mut slopes, mut rest, mut size) = (0.0, DVec3::ZERO, 0.0, 0.0);
-        for (axis, partial) in gradient.iter().enumerate() {
-            middle += direction[axis] * partial.middle;
-            slopes += direction[axis] * partial.slopes;
-            rest += direction[axis].abs() * partial.rest;
-            let magnitude = partial.middle.abs() + partial.slopes.abs().element_sum() + partial.rest;
-            rest += directions.radius[axis] * magnitude;
-            size += direction[axis].abs() * magnitude;
-        }
-        let radius = slopes.abs().element_sum() + rest + ROUNDING * size + f64::MIN_POSITIVE;
-        Self { middle, radius }.widened(0.0)
-    }
-
     pub(super) fn magnitude(self) -> f64 {
         (1.0 + ROUNDING) * (self.middle.abs() + self.radius)
     }
@@ -74,6 +58,21 @@ impl Ball {
     fn widened(self, by: f64) -> Self {
         Self { radius: (1.0 + ROUNDING) * (self.radius + by + ROUNDING * self.middle.abs()), ..self }
     }
+}
+
+/// The products of vectors, whose components are numbers of affine forms, and the directions of a beam.
+pub(super) fn along(directions: &Spread, gradient: &[Affine]) -> Affine {
+    let direction = directions.middle.to_array();
+    let (mut middle, mut slopes, mut rest, mut size) = (0.0, DVec3::ZERO, 0.0, 0.0);
+    for (axis, partial) in gradient.iter().enumerate() {
+        middle += direction[axis] * partial.middle;
+        slopes += direction[axis] * partial.slopes;
+        rest += direction[axis].abs() * partial.rest;
+        let magnitude = partial.middle.abs() + partial.slopes.abs().element_sum() + partial.rest;
+        rest += directions.radius[axis] * magnitude;
+        size += direction[axis].abs() * magnitude;
+    }
+    Affine { middle, slopes, rest: rest + ROUNDING * size }
 }
 
 /// All gradients of F over a box, or over several: vectors no farther from `middle` than `radius`, component by component.
@@ -133,6 +132,8 @@ pub(super) struct Form {
     incline: Ball,
     /// The derivative of F along every ray of the beam.
     pub(super) slope: Ball,
+    /// How the slope changes with t, about; 0 where that is not known.
+    pub(super) turn: f64,
     /// What no sum of columns, rows and the rest exceeds.
     across: f64,
     /// The stretch on which it holds.
@@ -168,6 +169,7 @@ impl Form {
             by_row: by_row.middle,
             incline: slope,
             slope,
+            turn: 0.0,
             across: (1.0 + ROUNDING) * (known + vague),
             reach,
         };
@@ -175,13 +177,13 @@ impl Form {
     }
 
     /// What the affine form of F says, which holds for the [forms](Beam::forms) of a stretch `reach` of the beam around `t`, in a unit
-    /// of t, with the derivative of F along all rays.
+    /// of t, with that of the derivative of F along all rays.
     pub(super) fn affine(
         beam: &Beam,
         reach: Span,
         (t, unit): (f64, f64),
         value: &Affine,
-        slope: Ball,
+        slope: &Affine,
     ) -> Self {
         // A beam of one column has no other.
         let each = |slope: f64, radius: f64| if radius > 0.0 { slope / radius } else { 0.0 };
@@ -194,7 +196,8 @@ impl Form {
             by_row: each(value.slopes.y, beam.radii[1]),
             // The quotient may underflow, and then is multiplied by as much as the stretch is long.
             incline: Ball { middle: value.slopes.z / unit, radius: 0.0 }.widened(f64::MIN_POSITIVE),
-            slope,
+            slope: Ball::of(slope),
+            turn: slope.slopes.z / unit,
             across: (1.0 + ROUNDING) * across,
             reach,
         };
@@ -216,6 +219,7 @@ impl Form {
             by_row: 0.0,
             incline: nothing,
             slope: nothing,
+            turn: 0.0,
             across: f64::INFINITY,
             reach,
         }
@@ -329,6 +333,28 @@ mod tests {
         }
     }
 
+    fn surface(formula: &str) -> Surface {
+        let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
+        Surface::new(std::sync::Arc::new(Interpreter), program)
+    }
+
+    /// The forms of F and its slope along the rays of a beam, all in the same `direction` if it is given.
+    fn forms_of(
+        surface: &Surface,
+        (beam, direction): (&Beam, Option<DVec3>),
+        arguments: &[Affine; 3],
+    ) -> Option<[Affine; 2]> {
+        let mut forms = FormBatch::default();
+        forms.push(arguments);
+        let kind = if direction.is_some() { Kernel::ParallelForms } else { Kernel::Forms };
+        forms.evaluate(&**surface.over_points(kind).unwrap(), direction, &mut Scratch::default());
+        if direction.is_some() {
+            return forms.found(0);
+        }
+        let [value, gradient @ ..]: [Affine; 4] = forms.found(0)?;
+        Some([value, along(&beam.directions, &gradient)])
+    }
+
     /// F at points of rays of a part, and its slope along them, are what the form of the part says.
     #[test]
     fn values_and_slopes_are_what_affine_forms_say() {
@@ -336,9 +362,7 @@ mod tests {
         let mut scratch = Scratch::default();
         let mut closest: [f64; 2] = [0.0; 2];
         for round in 0..600 {
-            let program = Ast::parse(FORMULAS[round % FORMULAS.len()]).unwrap().lower(&[]).unwrap();
-            let program = program.minus_level(0.0).simplified();
-            let surface = Surface::new(std::sync::Arc::new(Interpreter), program);
+            let surface = surface(FORMULAS[round % FORMULAS.len()]);
             let raster = raster(&mut random, round % 2 == 0);
             let tile = Tile::of(&raster, [random.between(-20.0, 20.0), 3.5], 64, 64);
             let side = 1 << random.below(6);
@@ -347,25 +371,9 @@ mod tests {
             let start = random.between(0.0, 3.0);
             let reach = Span { start, end: start + random.between(0.0, 0.02 * side as f64) };
             let (arguments, (t, unit)) = beam.forms(reach);
-            let mut forms = FormBatch::default();
-            forms.push(&arguments);
-            let found = match raster {
-                Raster::Parallel { direction, .. } => {
-                    forms.evaluate(
-                        &**surface.over_points(Kernel::ParallelForms).unwrap(),
-                        Some(direction),
-                        &mut scratch,
-                    );
-                    forms.found(0).map(|[value, slope]| (value, Ball::of(&slope)))
-                }
-                Raster::Spreading { .. } => {
-                    forms.evaluate(&**surface.over_points(Kernel::Forms).unwrap(), None, &mut scratch);
-                    let along = |gradient: [Affine; 3]| Ball::along(&beam.directions, &gradient);
-                    forms.found(0).map(|[value, x, y, z]| (value, along([x, y, z])))
-                }
-            };
-            let Some((value, slope)) = found else { continue };
-            let form = Form::affine(&beam, reach, (t, unit), &value, slope);
+            let found = forms_of(&surface, (&beam, tile.direction()), &arguments);
+            let Some([value, slope]) = found else { continue };
+            let form = Form::affine(&beam, reach, (t, unit), &value, &slope);
             let gradients = surface.over_points(Kernel::Gradients).unwrap();
             for _ in 0..20 {
                 let (column, row) = (area.column + random.below(side), area.row + random.below(side));
@@ -388,5 +396,32 @@ mod tests {
             }
         }
         assert!(closest.iter().all(|closest| *closest > 0.7), "forms hold far more: {closest:?}");
+    }
+
+    /// By second derivatives along the ray in the middle, found by hand.
+    #[test]
+    fn slopes_turn_as_second_derivatives_say() {
+        let mut random = Random::new(22);
+        for is_parallel in [true, false] {
+            let raster = raster(&mut random, is_parallel);
+            let tile = Tile::of(&raster, [0.0, 0.0], 2, 2);
+            let beam = Beam::new(&tile, Area { column: 0, row: 0, width: 2, height: 2 });
+            let DVec3 { x: dx, y: dy, z: dz } = beam.directions.middle;
+            let (arguments, (t, unit)) = beam.forms(Span { start: 1.0, end: 1.001 });
+            let at = beam.origins.middle + t * beam.directions.middle;
+            for (formula, turn) in [
+                ("x^2 + 3y*z", 2.0 * dx * dx + 6.0 * dy * dz),
+                ("x^3 - y", 6.0 * at.x * dx * dx),
+                ("exp(z)", at.z.exp() * dz * dz),
+                ("x + 2y - z", 0.0),
+            ] {
+                let [value, slope] =
+                    forms_of(&surface(formula), (&beam, tile.direction()), &arguments).unwrap();
+                let reach = Span { start: 1.0, end: 1.001 };
+                let form = Form::affine(&beam, reach, (t, unit), &value, &slope);
+                let off = (form.turn - turn).abs();
+                assert!(off <= 1e-2 * turn.abs() + 1e-12, "{formula}: {} {turn}", form.turn);
+            }
+        }
     }
 }

@@ -36,6 +36,7 @@ impl Sight {
         let unevenness = (1.0 + ROUNDING) * slope.radius / least;
         (least > 0.0 && 2.0 * ROOM * blur <= tolerance).then(|| Self {
             inverse: 1.0 / slope.middle,
+            turn: form.turn,
             unevenness,
             bend: unevenness / (form.reach.end - form.reach.start),
             blur,

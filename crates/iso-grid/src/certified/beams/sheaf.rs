@@ -41,6 +41,11 @@ impl<'a> Start<'a> {
         self.model.at(column - self.middle.0, row - self.middle.1)
     }
 
+    /// How far from there it may be.
+    pub(super) fn uncertainty(&self) -> f64 {
+        self.model.uncertainty
+    }
+
     /// Which of so many neighbours in a row, the first in this column and row, may have a root in the stretch: all that may, and few others.
     #[inline(always)]
     pub(super) fn likely(&self, first: (usize, usize), count: usize) -> Range<usize> {

@@ -6,7 +6,7 @@ use glam::DVec3;
 use iso_expr::{Composition, Interval};
 
 use super::beam::Beam;
-use super::form::{Ball, Form, Gradient};
+use super::form::{Form, Gradient, along};
 use super::grazing::SIZES;
 use super::subdivision::{Part, Subdivision};
 use crate::batch::Affine;
@@ -204,13 +204,14 @@ impl Subdivision<'_> {
     /// F on a slab, the one of this number among those whose forms were found last; `None` where they say nothing or less than roundings.
     fn affine_form(&self, slab: &Slab, number: usize, unit: (f64, f64)) -> Option<Form> {
         let (rays, forms) = (self.beam(slab.beam), &self.workspace.forms);
-        let (value, slope) = match self.forms() {
-            Kernel::ParallelForms => forms.found(number).map(|[value, slope]| (value, Ball::of(&slope)))?,
-            _ => forms.found(number).map(|[value, gradient @ ..]: [Affine; 4]| {
-                (value, Ball::along(&rays.directions, &gradient))
-            })?,
+        let [value, slope] = match self.forms() {
+            Kernel::ParallelForms => forms.found(number)?,
+            _ => {
+                let [value, gradient @ ..]: [Affine; 4] = forms.found(number)?;
+                [value, along(&rays.directions, &gradient)]
+            }
         };
-        let form = Form::affine(rays, slab.reach, unit, &value, slope);
+        let form = Form::affine(rays, slab.reach, unit, &value, &slope);
         (!form.is_vague()).then_some(form)
     }
 

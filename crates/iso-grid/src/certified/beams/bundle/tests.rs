@@ -29,7 +29,7 @@ fn ends_on_a_sphere(with_normals: bool, run: impl Fn(Pursuit<'_>) -> Taken) -> E
     };
     let tile = Tile::of(&raster, [-3.5, -3.5], 8, 8);
     let model = Model { t: 4.1, by_column: 0.0, by_row: 0.0, uncertainty: 0.2 };
-    let sight = Sight { inverse: -0.5, unevenness: 0.3, bend: 0.5, blur: 1e-15, tolerance: 1e-12 };
+    let sight = Sight { inverse: -0.5, turn: 2.0, unevenness: 0.3, bend: 0.5, blur: 1e-15, tolerance: 1e-12 };
     let start = Start::new(&model, (3.5, 3.5), Span { start: 4.0, end: 4.4 });
     let mut sheaf = Sheaf::default();
     (0..8).for_each(|row| sheaf.add((0, row), &[true; 8], &start));
@@ -64,9 +64,9 @@ fn ends_on_a_sphere(with_normals: bool, run: impl Fn(Pursuit<'_>) -> Taken) -> E
         points: &mut points,
         scratch: &mut scratch,
     });
-    // Rays of five rows meet the sphere, and those of two others are looked at.
-    assert!((2 * 56..3 * 56).contains(&taken.slopes), "{taken:?}");
-    assert!((40..2 * 40).contains(&taken.last), "{taken:?}");
+    // All rays are looked at, and those of five rows meet the sphere.
+    assert!((2 * 64..=3 * 64).contains(&taken.slopes), "{taken:?}");
+    assert!((40..=64).contains(&taken.last), "{taken:?}");
     let hits = bundles.iter().flat_map(Bundle::hits).map(|(place, hit)| (place, Ok(hit)));
     let lost = bundles.iter().flat_map(Bundle::lost).map(|(place, stretch)| (place, Err(stretch)));
     (hits.chain(lost).collect(), normals)
@@ -84,12 +84,12 @@ fn normals_are_those_of_gradients_next_to_the_hit_alone() {
     bundle.places[0] = 1;
     // F is t − 1, and was not taken near its root.
     (bundle.t[0], bundle.inverse[0]) = (1.0 + 1e-6, 1.0);
-    let sight = Sight { inverse: 1.0, unevenness: 1e-9, bend: 1e-9, blur: 0.0, tolerance: 1e-12 };
+    let sight = Sight { inverse: 1.0, turn: 0.0, unevenness: 1e-9, bend: 1e-9, blur: 0.0, tolerance: 1e-12 };
     let (x, yz) = ([2.0; ROW], [0.0; ROW]);
     let mut normals = [DVec3::NAN; 3];
     for expected in [DVec3::NAN, DVec3::X] {
         let value = [bundle.t[0] - 1.0; ROW];
-        assert_eq!(bundle.look(simd, (&value, None), (&sight, false)), Need::Nothing, "the root is proven");
+        assert_eq!(bundle.conclude(simd, &value, &sight), Need::Nothing, "the root is proven");
         bundle.put_normals(simd, ([&x, &yz, &yz], sight.tolerance), &mut normals);
         assert_eq!(normals[1].to_array().map(f64::to_bits), expected.to_array().map(f64::to_bits));
     }
