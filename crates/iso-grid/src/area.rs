@@ -25,9 +25,9 @@ impl Area {
         self.width.max(self.height)
     }
 
-    /// The places of its rays in a tile of so many columns, row by row.
-    pub(crate) fn places(self, width: usize) -> impl Iterator<Item = usize> {
-        self.rows().flat_map(move |row| self.columns().map(move |column| row * width + column))
+    /// The places of each row's rays in a tile of so many columns.
+    pub(crate) fn places(self, width: usize) -> impl Iterator<Item = Range<usize>> {
+        self.rows().map(move |row| row * width + self.column..row * width + self.column + self.width)
     }
 
     /// Columns and rows of the corners, left to right and top to bottom.

@@ -54,12 +54,15 @@ pub fn normals(
     asked.clear();
     for block in (Area { column: 0, row: 0, width: tile.width(), height: tile.height() }).blocks(side) {
         let first = asked.len();
-        for place in block.places(tile.width()).filter(|place| normals[*place].x.is_nan()) {
-            match outcomes[place] {
-                Outcome::Hit(Hit { t, .. }) => asked.push(Asked { place, t }),
-                // The gradient there may be nothing but rounding.
-                Outcome::Touch(Hit { bracket, .. }) => others.push(Met { place, bracket }),
-                _ => {}
+        for places in block.places(tile.width()) {
+            let known = outcomes[places.clone()].iter().zip(&normals[places.clone()]);
+            for (place, (outcome, _)) in places.zip(known).filter(|(_, (_, normal))| normal.x.is_nan()) {
+                match *outcome {
+                    Outcome::Hit(Hit { t, .. }) => asked.push(Asked { place, t }),
+                    // The gradient there may be nothing but rounding.
+                    Outcome::Touch(Hit { bracket, .. }) => others.push(Met { place, bracket }),
+                    _ => {}
+                }
             }
         }
         if let Some(kernel) = shorter.and_then(|tracer| kernel_on(tracer, tile, &asked[first..])) {
