@@ -100,6 +100,7 @@ fn habits_from_elsewhere_are_answered() {
     let case = Case::new();
     case.file("ball.txt", "x^2 + y^2 + z^2 = 1");
     for (formula, expected) in [
+        ("x2 + y2 = 1", "did you mean `x^2` or `x*2`?"),
         ("xy = 1", "did you mean `x*y`? To define it, write `xy := …`"),
         ("r = x^2; r", "to define it, write `r := …`"),
         ("sqr(x) = y", "`sqr(u)` is written `u^2`"),

@@ -115,6 +115,7 @@ fn notes_say_what_a_picture_does_not_show() {
             &[],
             "it is not known whether the surface goes on outside of the box that is shown, x -2..2",
         ),
+        ("r := 1; s := r; x^2 + y^2 + z^2 = r", &[], "`s` is defined, but not used"),
         ("floor(x^2 + y^2 + z^2) = 3", &[], "in grey: --show-status paints them magenta"),
         ("x^2 + y^2 + z^2 = 1e-8", &["--box", "-2,2", "--method", "grid"], "--method certified proves"),
     ] {

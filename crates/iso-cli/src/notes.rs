@@ -11,6 +11,8 @@ const CONSTANT: &str = "F − C does not depend on x, y or z";
 /// A picture that was drawn.
 pub(crate) struct Drawn<'a> {
     pub(crate) surface: &'a Surface,
+    /// Definitions that its formula does without.
+    pub(crate) unused: &'a [String],
     pub(crate) fitted: Fitted,
     pub(crate) pixels: StatusCounts,
     /// How many rays meet the region.
@@ -25,7 +27,8 @@ impl Drawn<'_> {
     /// Each with what to try, for people.
     pub(crate) fn notes(&self) -> Result<Vec<String>, Failure> {
         let StatusCounts { hit, touch, undecided, unfinished, .. } = self.pixels;
-        let mut notes = Vec::new();
+        let mut notes: Vec<_> =
+            self.unused.iter().map(|name| format!("`{name}` is defined, but not used")).collect();
         if undecided > 0 && !self.shows_status {
             notes.push(format!("{undecided} undecided, in grey: --show-status paints them magenta"));
         }

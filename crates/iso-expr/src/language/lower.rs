@@ -18,12 +18,13 @@ pub struct Formula {
     value: Option<f64>,
     is_equation: bool,
     parameters: Vec<(String, f64)>,
+    unused: Vec<String>,
 }
 
 impl Formula {
     /// F as it is, without parameters.
     pub(super) fn of_program(program: Program) -> Self {
-        Self { program, value: None, is_equation: false, parameters: Vec::new() }
+        Self { program, value: None, is_equation: false, parameters: Vec::new(), unused: Vec::new() }
     }
 
     /// F, the program's one output. For an equation it is the left side less the right side.
@@ -44,6 +45,11 @@ impl Formula {
     /// The names and values of all parameters, in the order of their definitions.
     pub fn parameters(&self) -> &[(String, f64)] {
         &self.parameters
+    }
+
+    /// The names of definitions that the formula does without, in their order.
+    pub fn unused(&self) -> &[String] {
+        &self.unused
     }
 
     /// F − `level`, whose zeros are the surface; F itself for the level zero.
@@ -90,6 +96,7 @@ impl Ast {
             program: lowering.builder.finish(output),
             is_equation: self.right.is_some(),
             parameters,
+            unused: self.unused(),
         })
     }
 

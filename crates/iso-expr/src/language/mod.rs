@@ -48,6 +48,7 @@ mod parse;
 mod print;
 mod scope;
 mod suggestion;
+mod unused;
 
 pub use ast::Ast;
 pub use error::{FormulaError, FormulaErrorKind};

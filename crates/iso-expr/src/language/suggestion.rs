@@ -24,9 +24,21 @@ pub(super) fn suggestion(
     let as_call = || functions_first(name, is_called, &values, &functions);
     as_case()
         .map(|other| format!("did you mean `{other}`?"))
-        .or_else(|| if is_called { written_here(name) } else { not_here(name) })
+        .or_else(
+            || if is_called { written_here(name) } else { not_here(name).or_else(|| power(name, &values)) },
+        )
         .or_else(|| as_product().or_else(as_call).map(|text| format!("did you mean `{text}`?")))
         .or_else(|| nearest(name, known.iter().copied()).map(|other| format!("did you mean `{other}`?")))
+}
+
+/// `x2` as `x^2`, whose sign may be lost on the way from other texts.
+fn power(name: &str, values: &[&str]) -> Option<String> {
+    let of_value = |value: &&str| {
+        let exponent = name.strip_prefix(*value)?;
+        let is_number = !exponent.is_empty() && exponent.chars().all(|character| character.is_ascii_digit());
+        is_number.then(|| format!("did you mean `{value}^{exponent}` or `{value}*{exponent}`?"))
+    };
+    values.iter().find_map(of_value)
 }
 
 /// `xy` as `x*y`, if it is made of known values and of digits.

@@ -176,7 +176,7 @@ impl Request {
         progress: &(dyn Fn(u64, u64) + Sync),
     ) -> Result<Option<Summary>, Failure> {
         let Shot { subject, camera: flags, files, frame, mut phases } = shot;
-        let Subject { surface, operations_before, plan } = &*subject;
+        let Subject { surface, unused, operations_before, plan } = &*subject;
         let region = fitted.region;
         let camera = camera(&flags, &fitted, self.drawn)?;
         let mut counters = Counters::default();
@@ -211,6 +211,7 @@ impl Request {
         let pixels = picture.counts;
         let drawn = Drawn {
             surface,
+            unused,
             fitted,
             pixels,
             rays_in_region: picture.counters.rays_in_region,

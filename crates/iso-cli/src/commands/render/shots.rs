@@ -19,6 +19,8 @@ use crate::values::{Setting, Sweep};
 pub(super) struct Subject {
     /// Its kernels.
     pub(super) surface: Surface,
+    /// Definitions that its formula does without.
+    pub(super) unused: Vec<String>,
     /// Operations of F − C before it was simplified.
     pub(super) operations_before: usize,
     /// What a picture of it takes.
@@ -104,7 +106,8 @@ impl Maker<'_> {
         }
         let plan = plan(self.flags, &formula, &program)?;
         let surface = Surface::new(Arc::clone(self.engine), program).stopped_by(self.stop.clone());
-        Ok(Arc::new(Subject { surface, operations_before, plan }))
+        let unused = formula.unused().to_vec();
+        Ok(Arc::new(Subject { surface, unused, operations_before, plan }))
     }
 }
 
