@@ -202,6 +202,14 @@ fn a_spent_budget_leaves_a_report_that_says_so() {
 }
 
 #[test]
+fn the_file_that_the_formula_is_read_from_is_not_replaced() {
+    let case = Case::new();
+    case.file("report.csv", "x + y");
+    case.run(&["report", "@report.csv", "-o", "."]).exits(2).mentions("would take the place of report.csv");
+    assert_eq!(case.content("report.csv"), b"x + y");
+}
+
+#[test]
 fn settings_out_of_range_are_known_before_anything_is_measured() {
     for (flag, value) in
         [("--grids", "0"), ("--grids", "99999999"), ("--steps", "0"), ("--steps", "2"), ("--budget", "soon")]

@@ -42,6 +42,15 @@ fn sampling_is_found_out() {
 }
 
 #[test]
+fn two_documents_are_two_files() {
+    let case = Case::new();
+    case.run(&["stress", "--case", "shell_1e-6", "--html", "a.html", "--markdown", "./a.html"])
+        .exits(2)
+        .mentions("--html and --markdown go to one file");
+    assert!(case.names().is_empty());
+}
+
+#[test]
 fn one_case_is_shown_in_a_table_and_written_to_a_document() {
     let case = Case::new();
     let arguments = ["stress", "--case", "double_sphere", "--size", "8x8", "--markdown", "out.md"];

@@ -85,6 +85,22 @@ fn bad_usage_exits_with_2() {
     assert!(case.names().is_empty(), "{:?}", case.names());
 }
 
+/// Numbers below zero are told to be out of range, and not taken for options.
+#[test]
+fn numbers_below_zero_are_answered_with_the_range() {
+    for (arguments, option) in [
+        (&["trace", "x", "--ray", "0,0,0,1,1,1", "--accuracy", "-1"][..], "--accuracy"),
+        (&["trace", "x", "--ray", "0,0,0,1,1,1", "--step", "-1"], "--step"),
+        (&["render", "x", "--time-limit", "-1s"], "--time-limit"),
+        (&["stress", "--threads", "-1"], "--threads"),
+        (&["bench", "x", "--runs", "-1"], "--runs"),
+        (&["report", "x", "--runs", "-1"], "--runs"),
+        (&["engines", "--runs", "-1"], "--runs"),
+    ] {
+        Case::new().run(arguments).exits(2).mentions("invalid value").mentions(option);
+    }
+}
+
 #[test]
 fn a_formula_without_a_command_is_told_which() {
     let case = Case::new();

@@ -79,7 +79,7 @@ impl Source {
             Text::Model(formula) if settings.is_empty() => Ok(formula.clone()),
             Text::Model(_) => Err(Failure::usage(
                 format!("{} is a model, which has no parameters", self.name),
-                "leave out --set",
+                "leave out --set and --sweep",
             )),
         }
     }

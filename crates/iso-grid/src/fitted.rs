@@ -1,6 +1,7 @@
 //! A region for a surface of which nothing is known but its formula.
 
 mod cells;
+mod faces;
 mod facing;
 mod sphere;
 
@@ -114,8 +115,8 @@ impl Fitted {
     /// The surface is looked for in growing cubes around the origin, in cells that intervals cannot prove empty. The
     /// region is drawn around it in the first cube whose faces it does not meet, or in a larger one if that is proven to hold more of it
     /// and its faces are not met either. If there is none, that cube is taken where it meets the faces of the fewest axes, and
-    /// [`Region::standard`] where nothing is found at all. Inside the cube that was taken nothing of the surface is left out. It is looked
-    /// for up to 512 from the origin, or up to 2²¹ if it is nowhere nearer, and one cube farther than the one that is taken; of surfaces with long
+    /// [`Region::standard`] where nothing is found at all. Inside the cube that was taken nothing of the surface is left out,
+    /// and faces that lie on it are moved out a little. It is looked for up to 512 from the origin, or up to 2²¹ if it is nowhere nearer, and one cube farther than the one that is taken; of surfaces with long
     /// waves the cubes are larger, so that the first one holds two.
     ///
     /// When the surface's [`Stop`](crate::Stop) is requested, any region.
@@ -157,7 +158,10 @@ impl Fitted {
         let Some((_, Glimpse { held, axes_met, .. })) = best else {
             return Ok(Self { goes_on, ..Region::standard().into() });
         };
-        let (outer, cells, region) = held.closed_in((kernel, &is_stopped), workspace);
+        let (outer, cells, mut region) = held.closed_in((kernel, &is_stopped), workspace);
+        if axes_met > 0 {
+            region = region.off_the_surface(kernel, workspace);
+        }
         let (sphere, facing) = outer.crossings(cells, (kernel, &is_stopped), workspace);
         Ok(Self { region, goes_on, is_cut_off: axes_met > 0, sphere, facing })
     }

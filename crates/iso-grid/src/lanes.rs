@@ -101,7 +101,7 @@ impl<S: Simd> Lanes<S> {
         self.simd.reduce_sum_f64s(self.numbers)
     }
 
-    /// The nearest numbers between two others; NaN where these are NaN.
+    /// The nearest numbers between two others; NaN where the numbers themselves are NaN.
     #[inline(always)]
     pub(crate) fn between(self, least: Self, most: Self) -> Self {
         self.at_least(least).at_most(most)

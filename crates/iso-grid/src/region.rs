@@ -17,7 +17,9 @@ pub struct Region {
 #[non_exhaustive]
 pub enum RegionError {
     /// An end is infinite or NaN, or the extent overflows.
-    #[error("the box must be finite along {axis}, but runs from {from:?} to {to:?}")]
+    #[error(
+        "the box must have finite ends and a finite length along {axis}, but runs from {from:?} to {to:?}"
+    )]
     NotFinite {
         /// The axis's name.
         axis: char,

@@ -82,7 +82,7 @@ impl Projection {
 #[non_exhaustive]
 pub enum CameraError {
     /// A number is out of its range.
-    #[error("{what} must be {range}, not {given}")]
+    #[error("{what} must be {range}, not {given:?}")]
     OutOfRange {
         /// What the number is.
         what: &'static str,
@@ -92,7 +92,9 @@ pub enum CameraError {
         given: f64,
     },
     /// Eye and target are the same point, or too near to give a direction.
-    #[error("the eye and the target are at the same place, so there is no direction to look in")]
+    #[error(
+        "the eye and the target are at the same place, or farther apart than any double, so there is no direction to look in"
+    )]
     NoDirection,
     /// The up direction is zero or along the line of sight.
     #[error("the up direction is zero or runs along the line of sight; choose one across it")]
@@ -191,13 +193,13 @@ impl Camera {
     /// The unit vector towards the right edge of the picture.
     pub fn right(&self) -> DVec3 {
         let (Raster::Parallel { right, .. } | Raster::Spreading { right, .. }) = self.raster;
-        right.normalize()
+        moderate(right).0.normalize()
     }
 
     /// The unit vector towards the upper edge of the picture.
     pub fn up(&self) -> DVec3 {
         let (Raster::Parallel { down, .. } | Raster::Spreading { down, .. }) = self.raster;
-        -down.normalize()
+        -moderate(down).0.normalize()
     }
 }
 
@@ -235,7 +237,8 @@ impl Frame<'_> {
     fn distance(&self, forward: DVec3, up: DVec3, off: DVec3) -> f64 {
         let Fitted { region, sphere, .. } = self.fitted;
         let Projection::Perspective { fov } = self.projection else {
-            return region.extent().length() + region.center().distance(self.fitted.center()) + off.length();
+            let off = [region.extent(), region.center() - self.fitted.center(), off];
+            return off.map(length).into_iter().sum();
         };
         let distance_of_sphere = |sphere: Sphere| {
             // Rays that touch it are off the middle by the angle with this tangent.
@@ -284,24 +287,47 @@ fn place(view: View, frame: &Frame<'_>) -> Result<(DVec3, DVec3, DVec3), CameraE
             let (outward, up) = outward(yaw, pitch);
             let center = frame.fitted.center();
             let target = target.unwrap_or(center);
-            checked("the target", "finite", target.length(), target.is_finite())?;
+            checked("the target", "finite", length(target), target.is_finite())?;
             let distance = distance.unwrap_or_else(|| frame.distance(-outward, up, target - center));
             checked("the distance", "positive", distance, distance > 0.0 && distance.is_finite())?;
             Ok((target + distance * outward, -outward, up))
         }
         View::LookAt { eye, target, up } => {
             let all = eye + target + up.unwrap_or_default();
-            checked("the eye, the target and the up direction", "finite", all.length(), all.is_finite())?;
-            let forward = (target - eye).try_normalize().ok_or(CameraError::NoDirection)?;
+            checked("the eye, the target and the up direction", "finite", length(all), all.is_finite())?;
+            let forward = unit(target - eye).ok_or(CameraError::NoDirection)?;
             let is_along = |up: DVec3| forward.cross(up).length() < 1e-9;
             let up = match up {
-                Some(up) => up.try_normalize().filter(|up| !is_along(*up)).ok_or(CameraError::NoUp)?,
+                Some(up) => unit(up).filter(|up| !is_along(*up)).ok_or(CameraError::NoUp)?,
                 None if is_along(DVec3::Z) => DVec3::Y,
                 None => DVec3::Z,
             };
             Ok((eye, forward, up))
         }
     }
+}
+
+/// A vector in a size whose square neither overflows nor underflows, which changes no bit, and how many times as long as it was.
+fn moderate(vector: DVec3) -> (DVec3, f64) {
+    const LARGE: f64 = 1e150;
+    let size = vector.abs().max_element();
+    let factor = match size {
+        LARGE.. => 2.0_f64.powi(-600),
+        _ if size < 1.0 / LARGE => 2.0_f64.powi(600),
+        _ => 1.0,
+    };
+    (factor * vector, factor)
+}
+
+/// How long a vector is, which may be as long as any double.
+fn length(vector: DVec3) -> f64 {
+    let (vector, factor) = moderate(vector);
+    vector.length() / factor
+}
+
+/// The direction of a vector of any length but zero.
+fn unit(vector: DVec3) -> Option<DVec3> {
+    moderate(vector).0.try_normalize()
 }
 
 fn checked(what: &'static str, range: &'static str, given: f64, holds: bool) -> Result<(), CameraError> {
@@ -422,6 +448,29 @@ mod tests {
                 }
                 let off = (farthest - FILLED_BY_SPHERE).abs();
                 assert!(off < 1e-4, "{width}x{height} {projection:?}: {farthest}");
+            }
+        }
+    }
+
+    /// As far as doubles go, for squares of lengths go half as far.
+    #[test]
+    fn cameras_see_regions_of_any_size() {
+        let size = Size::new(100, 80).unwrap();
+        for power in [-1000, -540, -500, 500, 540, 1000] {
+            let half = 2_f64.powi(power);
+            let region = Region::new(DVec3::splat(-half), DVec3::splat(half)).unwrap();
+            let views =
+                [View::DEFAULT, View::LookAt { eye: DVec3::splat(half), target: DVec3::ZERO, up: None }];
+            for view in views {
+                for projection in [Projection::DEFAULT, Projection::Orthographic { view_width: None }] {
+                    let camera = Camera::new(view, projection, &region, size).unwrap();
+                    for axis in [camera.forward(), camera.right(), camera.up()] {
+                        assert!(
+                            (axis.length() - 1.0).abs() < CLOSE,
+                            "{power} {view:?} {projection:?}: {axis}"
+                        );
+                    }
+                }
             }
         }
     }

@@ -16,7 +16,7 @@ use crate::clock::Deadline;
 use crate::engine::threads;
 use crate::failure::Failure;
 use crate::flags::{AxesFlags, EngineName, ReportFlags, SuiteName};
-use crate::formula::{Source, minus_level};
+use crate::formula::{Source, file_of, minus_level};
 use crate::measurement::Subject;
 use crate::method::fitted_unless;
 use crate::output::{OutputFile, to_standard_output};
@@ -34,6 +34,9 @@ pub(crate) fn run(flags: ReportFlags) -> Result<(), Failure> {
         rounds: flags.sweep.runs.get() as usize,
     };
     let mut files = ReportFiles::new(&flags.sweep.output)?;
+    if let Some(source) = flags.subject.formula.as_deref().and_then(file_of) {
+        files.spare(&source)?;
+    }
     let progress = Progress::new(true);
     let report = threads(&flags.threads)?.install(|| {
         sweep.run(|done, all, report| {
@@ -153,6 +156,11 @@ impl ReportFiles {
             watch: Stopwatch::start(),
             rest: Duration::ZERO,
         })
+    }
+
+    /// That none takes the place of a file from which the formula is read.
+    fn spare(&self, source: &Path) -> Result<(), Failure> {
+        [&self.table, &self.object, &self.page].into_iter().try_for_each(|file| file.spares(source))
     }
 
     /// Whether it is time to write them again.

@@ -17,6 +17,11 @@ pub(crate) fn run(flags: StressFlags) -> Result<(), Failure> {
     let to_file = |path: &Path| OutputFile::new(path.to_owned());
     let html = flags.html.as_deref().map(to_file).transpose()?;
     let markdown = flags.markdown.as_deref().map(to_file).transpose()?;
+    if let (Some(html), Some(markdown)) = (&html, &markdown)
+        && html.is_replaced_by(markdown)
+    {
+        return Err(Failure::usage("--html and --markdown go to one file", "give them different names"));
+    }
     let cases = chosen(flags.case.as_deref())?;
     let (progress, done) = (Progress::new(true), AtomicU64::new(0));
     let measured: Result<Vec<Measured>, Failure> = threads(&flags.threads)?.install(|| {

@@ -13,7 +13,7 @@ use crate::values;
 /// Both engines run in turns, so that a change of the machine's speed meets both; medians stand beside the least and greatest
 /// measurement.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(allow_negative_numbers = true, after_help = EXAMPLES)]
 pub(crate) struct BenchFlags {
     #[command(flatten)]
     pub(crate) formula: FormulaFlags,

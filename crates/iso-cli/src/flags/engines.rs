@@ -15,7 +15,7 @@ use crate::values;
 /// Formulas are made of as many like parts as wanted. Of each size, one evaluation, compiling and pictures by the method
 /// certified are measured, both engines in turns. The folder gets evaluations.csv, pictures.csv and plots.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(allow_negative_numbers = true, after_help = EXAMPLES)]
 pub(crate) struct EnginesFlags {
     /// What the formulas are made of
     #[arg(long, value_name = "FAMILY,...", value_delimiter = ',', value_enum, default_values = ["blobs", "balls"])]

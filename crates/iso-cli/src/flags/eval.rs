@@ -13,7 +13,7 @@ use crate::values;
 /// The value of an equation is its left side minus its right side, and that of an expression is less by `--level`. Numbers
 /// are written with the digits that read back to the same float.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES, group = ArgGroup::new("places").required(true))]
+#[command(allow_negative_numbers = true, after_help = EXAMPLES, group = ArgGroup::new("places").required(true))]
 pub(crate) struct EvalFlags {
     #[command(flatten)]
     pub(crate) formula: FormulaFlags,

@@ -11,7 +11,7 @@ use crate::values;
 #[command(next_help_heading = "Running")]
 pub(crate) struct LimitFlags {
     /// Stop after this time, such as 90s, 1.5m or 200ms; what is finished is written, the rest is marked, the exit code is 3
-    #[arg(long, value_name = "TIME", value_parser = values::duration)]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = values::duration)]
     pub(crate) time_limit: Option<Duration>,
 
     /// Upon Ctrl-C, write what is finished and mark the rest; a second Ctrl-C ends at once

@@ -47,7 +47,7 @@ pub(crate) struct MethodFlags {
     #[arg(long, value_name = "WIDTH", value_parser = values::tolerance)]
     pub(crate) tolerance: Option<f64>,
 
-    /// The width, relative to t, to which the certified method encloses roots; coarser is faster [default: 1e-12]
+    /// The width, relative to t, to which the certified method encloses roots; a coarser one may leave more contacts and near misses open [default: 1e-12]
     #[arg(long, value_name = "WIDTH", value_parser = values::positive)]
     pub(crate) accuracy: Option<f64>,
 }

@@ -20,7 +20,7 @@ const USAGE: &str = "iso report [OPTIONS] <FORMULA>\n       iso report [OPTIONS]
 /// proves of that pixel alone. The folder of the report gets report.csv, report.json, the page report.html, and its plots.
 /// They are written anew while it goes on, so that an interrupted report is kept.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES, override_usage = USAGE)]
+#[command(allow_negative_numbers = true, after_help = EXAMPLES, override_usage = USAGE)]
 pub(crate) struct ReportFlags {
     #[command(flatten)]
     pub(crate) subject: SubjectFlags,

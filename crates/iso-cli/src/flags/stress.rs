@@ -14,7 +14,7 @@ use crate::values;
 /// their enclosures, and what the certified method proves must agree with what is known of the surface; the other
 /// methods are held against it.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(allow_negative_numbers = true, after_help = EXAMPLES)]
 pub(crate) struct StressFlags {
     /// Run this case alone
     #[arg(long, value_name = "NAME")]

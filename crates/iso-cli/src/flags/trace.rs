@@ -12,7 +12,7 @@ use crate::values;
 ///
 /// A ray is the points o + t·d with t ≥ 0, where d may have any length. Rows of the result are in the order of the rays.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES, group = ArgGroup::new("origins").required(true))]
+#[command(allow_negative_numbers = true, after_help = EXAMPLES, group = ArgGroup::new("origins").required(true))]
 pub(crate) struct TraceFlags {
     #[command(flatten)]
     pub(crate) formula: FormulaFlags,

@@ -35,7 +35,13 @@ impl Formula {
         }
         let mut model = Model { builder: Builder::default(), values: HashMap::new() };
         let mut last = None;
-        for line in text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#')) {
+        // Editors of some systems begin a text with a mark.
+        for line in text
+            .trim_start_matches('\u{feff}')
+            .lines()
+            .map(str::trim)
+            .filter(|line| !line.is_empty() && !line.starts_with('#'))
+        {
             last = Some(model.read_line(text, line)?);
         }
         let Some(output) = last else {

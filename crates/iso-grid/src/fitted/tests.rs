@@ -205,6 +205,29 @@ fn surfaces_with_waves_are_shown_with_some_of_them() {
     }
 }
 
+/// Faces at the end of whole waves, of steps and of planes. What only passes through faces moves none.
+#[test]
+fn no_face_lies_on_the_surface() {
+    use std::f64::consts::PI;
+    for (formula, half_sides) in [
+        ("sin(x)*sin(y)*sin(z)", [2.0 * PI; 3].map(|half| (1.0 + 1.0 / 32.0) * half)),
+        ("sin(pi x)*y", [2.0625, 2.0, 2.0]),
+        ("sin(2pi x)*sin(2pi y)*z", [2.0625, 2.0625, 2.0]),
+        ("x*y*(x - 2)*(x + 2)", [2.0625, 2.0, 2.0]),
+        ("mod(x, 1)*y", [2.0625, 2.0, 2.0]),
+        ("x*y = z", [2.0; 3]),
+        ("z = tan(x*y)", [2.0; 3]),
+        ("sin(x) = cos(y) + sin(z)", [2.0 * PI; 3]),
+    ] {
+        let region = fitted(formula);
+        let off = (region.extent() - 2.0 * DVec3::from_array(half_sides)).abs().max_element();
+        assert!(
+            off < 1e-9 || formula == "x*y*(x - 2)" && (off - 0.0625).abs() < 1e-9,
+            "{formula}: {region:?}"
+        );
+    }
+}
+
 #[test]
 fn a_single_point_keeps_a_region_around_it() {
     let region = fitted("(x - 1)^2 + y^2 + z^2 = 0");

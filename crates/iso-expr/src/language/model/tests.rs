@@ -19,6 +19,13 @@ fn error(text: &str) -> (FormulaErrorKind, &str) {
 }
 
 #[test]
+fn a_byte_order_mark_is_no_part_of_a_name() {
+    let model = Formula::read_model("\u{feff}a var-x\nb neg a").unwrap();
+    assert_eq!(model.program().evaluate([2.0, 0.0, 0.0]), [-2.0]);
+    assert_eq!(error("\u{feff}a var-x\nb add a q").1, "q");
+}
+
+#[test]
 fn operations_mean_what_fidget_documents() {
     // fidget's `and` and `or` are short circuits, `mod` is `rem_euclid`, `round` that of Rust's floats.
     for (operation, a, b, expected) in [

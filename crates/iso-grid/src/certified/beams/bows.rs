@@ -248,4 +248,46 @@ mod tests {
             }
         }
     }
+
+    /// F bends so little that squares of slopes are but two of the least doubles, and all roundings are to its advantage: it dips below zero.
+    #[test]
+    fn nothing_is_said_of_signs_where_products_underflow() {
+        let all = |number| Lanes::all(Scalar::new(), number);
+        // Twice a least second derivative like this has no room for anything less.
+        let least = 2_f64.powi(-1034);
+        let twice_least = (2.0 - 16.0 * ROUNDING) * least;
+        assert_eq!(twice_least, 2.0 * least);
+        let bow = |twice_least: f64| Bow { twice_least, ..bow(1.0) };
+        // Two roundings to even: the value is half a double less, and the slope half a double more.
+        let (value, slope, half) = (1.5, 1.5_f64.sqrt(), 0.5 * f64::EPSILON);
+        assert_eq!([value - half, slope + half], [value, slope]);
+        let [value_there, slope_there] = [value, slope].map(|number| (number / half) as u128);
+        assert!((slope_there + 1).pow(2) > (value_there - 1) << 53, "F is negative where it is least");
+        let course = |scale: f64| Course {
+            value: all(value * scale),
+            value_error: all(half * scale),
+            slope: all(slope * 2_f64.powi(-537)),
+            slope_error: all(half * 2_f64.powi(-537)),
+        };
+        let scale = 2_f64.powi(-41);
+        assert!(!course(scale).stays_above(&bow(twice_least)).is_any());
+        // Farther above zero it is certain.
+        assert!(course(2_f64.powi(12)).stays_above(&bow(twice_least)).is_any());
+    }
+
+    /// It falls no farther than the square of its slope over twice its bending.
+    #[test]
+    fn what_bends_upwards_stays_above_zero_by_more_than_its_errors() {
+        let stays_above = |numbers: [f64; 4]| {
+            let [value, value_error, slope, slope_error] =
+                numbers.map(|number| Lanes::all(Scalar::new(), number));
+            Course { value, value_error, slope, slope_error }.stays_above(&bow(1.0)).is_any()
+        };
+        for slope in [0.05, -0.05] {
+            assert!(stays_above([1e-3, 1e-4, slope, 1e-3]));
+            assert!(!stays_above([6e-4, 1e-4, slope, 1e-3]), "it is lower");
+            assert!(!stays_above([1e-3, 4e-4, slope, 1e-3]), "its value may be off by more");
+            assert!(!stays_above([1e-3, 1e-4, slope, 1e-2]), "its slope may be off by more");
+        }
+    }
 }

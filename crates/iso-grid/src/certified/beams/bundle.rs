@@ -27,16 +27,17 @@ pub(crate) struct Bundle {
     pub(super) wanted: [Row; 2],
     /// Where F is to be taken next, inside `reach`. In the end, about where the root is.
     pub(super) t: Row,
-    /// F at the last place where its slope was taken, one over the slope, and how far t is from there.
+    /// F at the last place where its slope was taken, one over the slope, and how far t is from there; before the first, the slope in the middle, and
+    /// infinite.
     value: Row,
     inverse: Row,
     step: Row,
-    /// How far t is from where F was taken last.
+    /// How far t is from where F was taken at the last conclusion.
     moved: Row,
     pub(super) state: Row,
 }
 
-/// A ray is near its root where another step is expected to leave this part of the tolerance.
+/// A ray is near its root where another step is expected to leave it known to within no more than so many times the tolerance.
 const NEAR: f64 = 64.0;
 
 /// What is to be taken of F next along the rays of a bundle.
@@ -66,10 +67,10 @@ impl Need {
 pub(super) struct Sight {
     /// One over the middle of the slopes of F.
     pub(super) inverse: f64,
-    /// How the slope changes with t, about.
-    pub(super) turn: f64,
     /// How far that is from one over any slope, as part of it.
     pub(super) unevenness: f64,
+    /// How the slope changes with t, about.
+    pub(super) turn: f64,
     /// How much a slope may differ from the one a unit of t away, as part of it, about.
     pub(super) bend: f64,
     /// How far rounding of F may move a root.
@@ -140,7 +141,7 @@ impl Bundle {
         are_open
     }
 
-    /// A step towards the roots, by the values and the slopes of F at t: by Newton's method, bent as slopes are, at first, and then by inverse
+    /// A step towards the roots, by the values and the slopes of F at t: by Newton's method, bent as slopes are (Chebyshev), at first, and then by inverse
     /// cubic interpolation (Hermite) between there and the last place. By the middle of the part's slopes where F would have one that it does
     /// not have. Says what is needed next.
     #[inline(always)]
@@ -164,11 +165,11 @@ impl Bundle {
             let bend = if is_first {
                 -(linear * linear * inverse * all(0.5 * sight.turn))
             } else {
-                let (last, inverse_there) = (at(&self.value), at(&self.inverse));
-                let per_value = one / (value - last);
+                let (value_there, inverse_there) = (at(&self.value), at(&self.inverse));
+                let per_value = one / (value - value_there);
                 let (secant, share) = (before * per_value, value * per_value);
                 let change = inverse_there + inverse - (secant + secant);
-                share * (value * (inverse - secant) - last * share * change)
+                share * (value * (inverse - secant) - value_there * share * change)
             };
             // A bend is a small correction, or is not a number where F was the same before.
             let is_small = (bend + bend).abs().is_less(linear.abs());
@@ -236,8 +237,7 @@ impl Bundle {
             (since_slopes + step).put(&mut self.step, part);
             let state = was_open.select(state, before);
             state.put(&mut self.state, part);
-            needed =
-                state.is_same(open).select(is_far.select(another, needed.between(last, another)), needed);
+            needed = state.is_same(open).select(is_far.select(another, needed.at_least(last)), needed);
         }
         Need::of(needed.greatest())
     }

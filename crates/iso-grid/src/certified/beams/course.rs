@@ -24,7 +24,7 @@ impl<S: Simd> Course<S> {
     pub(super) fn stays_above(&self, bow: &Bow) -> Mask<S> {
         let steepest = self.slope.abs() + self.slope_error;
         let risen = (self.value - self.value_error) * self.value.all_be(bow.twice_least);
-        // Both products may underflow.
+        // Where the least second derivative is so small that `twice_least` has no room for roundings, both products underflow.
         (steepest * steepest).is_less(risen - self.value.all_be(f64::MIN_POSITIVE))
     }
 

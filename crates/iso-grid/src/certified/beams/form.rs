@@ -1,4 +1,4 @@
-//! The mean value form of F over a stretch of a beam.
+//! What F is over a stretch of a beam: the mean value form, or an affine one.
 
 use glam::DVec3;
 use iso_expr::interval::round_up;

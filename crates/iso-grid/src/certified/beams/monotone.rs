@@ -36,8 +36,8 @@ impl Sight {
         let unevenness = (1.0 + ROUNDING) * slope.radius / least;
         (least > 0.0 && 2.0 * ROOM * blur <= tolerance).then(|| Self {
             inverse: 1.0 / slope.middle,
-            turn: form.turn,
             unevenness,
+            turn: form.turn,
             bend: unevenness / (form.reach.end - form.reach.start),
             blur,
             tolerance,
@@ -161,18 +161,17 @@ impl Subdivision<'_> {
         let kernels = part.kernels;
         let Workspace { arch, points, scratch, counters, .. } = &mut *self.workspace;
         let of_part = &self.kernels[kernels as usize];
-        let takes_gradients = self.normals.is_some();
-        let kernel_of_last = if takes_gradients { Kernel::Gradients } else { Kernel::Values };
+        let kernel_of_last = if self.normals.is_some() { Kernel::Gradients } else { Kernel::Values };
         let kernel = of_part.over_points(kernel_of_last);
         let last = match &mut self.normals {
-            Some(normals) if takes_gradients => Last::Gradient(kernel, normals),
-            _ => Last::Value(kernel),
+            Some(normals) => Last::Gradient(kernel, normals),
+            None => Last::Value(kernel),
         };
         let slopes = of_part.over_points(Kernel::Slopes);
         let taken =
             arch.dispatch(Pursuit { tile: &self.tile, start, bundles, sight, slopes, last, points, scratch });
         counters.trace_evaluations += (taken.slopes + taken.last) as u64;
-        if takes_gradients {
+        if self.normals.is_some() {
             counters.gradient_evaluations += taken.last as u64;
         }
         counters.operations += of_part.charge(Kernel::Slopes, taken.slopes);

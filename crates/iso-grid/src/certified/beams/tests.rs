@@ -7,6 +7,7 @@ use iso_expr::{Ast, Interpreter};
 use pulp::Arch;
 
 use super::sheaf::Sheaf;
+use super::subdivision::{Known, Subdivision};
 use crate::{Certified, Outcome, Raster, Region, Surface, Tile, Tracer, Workspace};
 
 /// Silhouettes, edges of unions and of intersections, one that is cut, and a limb.
@@ -72,4 +73,29 @@ fn rows_may_be_longer_than_a_sheaf() {
     // Once on each ray, and on none for its own.
     let taken = workspace.counters.trace_evaluations;
     assert!(taken < tile.len() as u64 + 64, "{taken}");
+}
+
+/// Kernels of the same function on the same box are known by their number, but not where less is left of them: that holds on a slab alone.
+#[test]
+fn what_is_left_on_a_slab_is_not_known_elsewhere() {
+    let program = Ast::parse(FORMULAS[1]).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
+    let surface = Surface::new(Arc::new(Interpreter), program);
+    let region = Region::new(DVec3::splat(-1.5), DVec3::splat(1.5)).unwrap();
+    let certified = Certified::new(&surface, region).unwrap();
+    let rays = [crate::Ray { origin: 4.0 * DVec3::Z, direction: DVec3::NEG_Z }];
+    let (mut workspace, mut outcomes) = (Workspace::default(), [Outcome::Miss]);
+    let ends = (&mut outcomes[..], None);
+    let mut subdivision = Subdivision::new(&certified, &mut workspace, rays[..].into(), ends).unwrap();
+
+    let place = certified.places.kernels(DVec3::splat(1.1), DVec3::splat(1.2));
+    let number_of =
+        |subdivision: &mut Subdivision<'_>, other| subdivision.known_number_of(Arc::clone(&place), other);
+    let first = number_of(&mut subdivision, 0);
+    assert!(first > 0, "less is left there than everywhere");
+    assert_eq!(number_of(&mut subdivision, 0), first, "the last one is known");
+    let left = subdivision.number_of(Arc::clone(subdivision.kernels(first)));
+    subdivision.faces[left as usize] = Known::OnSlab(None);
+    assert_eq!(number_of(&mut subdivision, first), first, "and the other one");
+    let again = number_of(&mut subdivision, left);
+    assert!(again != left && !subdivision.is_narrowed(again));
 }

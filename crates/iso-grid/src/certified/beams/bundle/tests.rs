@@ -133,3 +133,94 @@ fn rays_end_where_they_meet_the_sphere_on_any_processor() {
         }
     }
 }
+
+#[test]
+fn the_first_step_bends_as_slopes_do_where_that_is_known() {
+    let (wanted, reach) = (Span { start: 0.5, end: 1.5 }, Span { start: 0.0, end: 2.0 });
+    let model = Model { t: 1.1, by_column: 0.0, by_row: 0.0, uncertainty: 0.2 };
+    let start = Start::new(&model, (0.0, 0.0), wanted);
+    // F is (t − 1) + (t − 1)²/2, taken at 1.1.
+    let [value, slope] = [0.105, 1.1].map(|number| [number; ROW]);
+    let newton = 1.1 - 0.105 / 1.1;
+    let unknown = [0.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(|turn| (turn, newton, 1e-15));
+    for (turn, expected, most) in [(1.0, 1.0, 5e-4)].into_iter().chain(unknown) {
+        let mut sheaf = Sheaf::default();
+        sheaf.add((0, 0), &[true], &start);
+        let [bundle] = sheaf.take([wanted, reach]) else { panic!("one ray is one bundle") };
+        (bundle.t, bundle.step) = ([1.1; ROW], [f64::INFINITY; ROW]);
+        let sight = Sight { inverse: 1.0, turn, unevenness: 0.5, bend: 0.25, blur: 0.0, tolerance: 1e-12 };
+        let need = bundle.approach(Scalar::new(), [&value, &slope], (&sight, true));
+        assert_eq!(need, Need::Slopes);
+        assert!((bundle.t[0] - expected).abs() <= most, "{turn}: {}", bundle.t[0]);
+        assert_eq!(
+            (bundle.state[0], bundle.wanted, bundle.reach),
+            (state::OPEN, [[0.5; ROW], [1.5; ROW]], [[0.0; ROW], [2.0; ROW]])
+        );
+    }
+}
+
+/// Where the model is as good as what is wanted. Nothing is left of rays that the bundle held before.
+#[test]
+fn the_last_look_may_be_the_first() {
+    let program = Ast::parse("(6 - z)^2/4").unwrap().lower(&[]).unwrap().minus_level(1.0);
+    let (right, down) = (0.1 * DVec3::X, 0.1 * DVec3::Y);
+    let raster = Raster::Parallel { middle: 5.0 * DVec3::Z, right, down, direction: DVec3::NEG_Z };
+    let tile = Tile::of(&raster, [0.0, 0.0], 1, 1);
+    let model = Model { t: 1.01, by_column: 0.0, by_row: 0.0, uncertainty: 0.02 };
+    let sight = Sight { inverse: 1.0, turn: 0.5, unevenness: 0.1, bend: 0.1, blur: 1e-15, tolerance: 0.1 };
+    let [wanted, reach] = [Span { start: 0.5, end: 1.5 }, Span { start: 0.4, end: 1.6 }];
+    let start = Start::new(&model, (0.0, 0.0), wanted);
+    let [values, slopes] = [program.clone(), program.with_slope()]
+        .map(|program| Interpreter.batch(&program.simplified()).unwrap());
+    for before in [0.0, 7.0, f64::NAN] {
+        let mut sheaf = Sheaf::default();
+        sheaf.add((0, 0), &[true], &start);
+        let bundles = sheaf.take([wanted, reach]);
+        let bundle = &mut bundles[0];
+        (bundle.value, bundle.inverse, bundle.step) = ([before; ROW], [before; ROW], [before; ROW]);
+        let taken = Pursuit {
+            tile: &tile,
+            start: &start,
+            bundles,
+            sight: &sight,
+            slopes: &*slopes,
+            last: Last::Value(&*values),
+            points: &mut PointBatch::default(),
+            scratch: &mut Scratch::default(),
+        }
+        .with_simd(Scalar::new());
+        assert_eq!((taken.slopes, taken.last), (0, ROW));
+        let [(0, hit)] = bundles[0].hits().collect::<Vec<_>>()[..] else { panic!("the ray has a root") };
+        // F is (1 + t)²/4 − 1, with a slope of 1 where it is zero.
+        assert!((hit.t - 1.0).abs() < 1e-4, "{before}: {hit:?}");
+        assert!(hit.bracket.start <= 1.0 && 1.0 <= hit.bracket.end);
+    }
+}
+
+/// Whichever of its slopes F has, and however far its value is off.
+#[test]
+fn what_encloses_a_root_holds_all_that_there_may_be() {
+    let concluded = |[t, value]: [f64; 2], [unevenness, blur]: [f64; 2], wanted: Span| {
+        let model = Model { t, by_column: 0.0, by_row: 0.0, uncertainty: 0.2 };
+        let mut sheaf = Sheaf::default();
+        sheaf.add((0, 0), &[true], &Start::new(&model, (0.0, 0.0), wanted));
+        let [bundle] = sheaf.take([wanted, Span { start: 0.5, end: 1.5 }]) else { panic!("one bundle") };
+        (bundle.t, bundle.inverse) = ([t; ROW], [1.0; ROW]);
+        let sight = Sight { inverse: 1.0, turn: 0.0, unevenness, bend: 0.1, blur, tolerance: 0.1 };
+        bundle.conclude(Scalar::new(), &[value; ROW], &sight);
+        (bundle.hits().next().map(|(_, hit)| hit.bracket), bundle.state[0])
+    };
+    for (taken, errors, [first, last]) in [
+        // Slopes from 0.8 to 1.2, a value that is off, and a root between two doubles.
+        ([1.1, 0.02], [0.25, 0.0], [1.1 - 0.02 / 0.8, 1.1 - 0.02 / 1.2]),
+        ([1.1, 0.02], [0.0, 1e-3], [1.079, 1.081]),
+        ([1.0, 2_f64.powi(-60)], [0.0, 0.0], [1.0 - f64::EPSILON, 1.0]),
+    ] {
+        let found = |start, end| concluded(taken, errors, Span { start, end });
+        for (start, end) in [(0.6, 1.4), (0.6, first), (last, 1.4)] {
+            let (Some(bracket), state::HIT) = found(start, end) else { panic!("{taken:?}, {start}, {end}") };
+            assert!(bracket.start <= first && last <= bracket.end, "{bracket:?}");
+        }
+        assert_eq!([found(0.6, first - 0.01), found(last + 0.01, 1.4)], [(None, state::FREE); 2]);
+    }
+}
