@@ -40,7 +40,7 @@ pub enum GridError {
         allowed: u32,
     },
     /// The distance between samples is out of range.
-    #[error("samples {given:?} of a cell's side apart (--step); it takes {least:?} to 1")]
+    #[error("samples {given:?} of a cell's side apart; it takes {least:?} to 1")]
     Step {
         /// The distance asked for.
         given: f64,

@@ -116,8 +116,8 @@ impl Fitted {
     /// region is drawn around it in the first cube whose faces it does not meet, or in a larger one if that is proven to hold more of it
     /// and its faces are not met either. If there is none, that cube is taken where it meets the faces of the fewest axes, and
     /// [`Region::standard`] where nothing is found at all. Inside the cube that was taken nothing of the surface is left out,
-    /// and faces that lie on it are moved out a little. It is looked for up to 512 from the origin, or up to 2²¹ if it is nowhere nearer, and one cube farther than the one that is taken; of surfaces with long
-    /// waves the cubes are larger, so that the first one holds two.
+    /// and faces that lie on it are moved out a little. It is looked for up to 512 from the origin, or up to 2²¹ if it is nowhere nearer, and one
+    /// cube farther than the one that is taken; of surfaces with long waves the cubes are larger, so that the first one holds two.
     ///
     /// When the surface's [`Stop`](crate::Stop) is requested, any region.
     ///

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use iso_expr::{
-    Axis, BatchKernel, BoxKernel, CompileError, Engine, Operation, PointKernel, Program, Scratch,
+    Ast, Axis, BatchKernel, BoxKernel, CompileError, Engine, Interpreter, Operation, PointKernel, Program,
+    Scratch,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -58,6 +59,12 @@ impl BatchKernel for Functions {
             }
         }
     }
+}
+
+/// The surface of a formula, interpreted.
+pub(crate) fn surface_of(formula: &str) -> Surface {
+    let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
+    Surface::new(Arc::new(Interpreter), program)
 }
 
 /// The surface where `value` is zero.

@@ -91,7 +91,7 @@ pub enum CameraError {
         /// What it was.
         given: f64,
     },
-    /// Eye and target are the same point, or too near to give a direction.
+    /// Eye and target are the same point, or farther apart than any double.
     #[error(
         "the eye and the target are at the same place, or farther apart than any double, so there is no direction to look in"
     )]

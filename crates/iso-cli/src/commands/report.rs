@@ -33,10 +33,8 @@ pub(crate) fn run(flags: ReportFlags) -> Result<(), Failure> {
         growing: growing(&flags.axes),
         rounds: flags.sweep.runs.get() as usize,
     };
-    let mut files = ReportFiles::new(&flags.sweep.output)?;
-    if let Some(source) = flags.subject.formula.as_deref().and_then(file_of) {
-        files.spare(&source)?;
-    }
+    let source = flags.subject.formula.as_deref().and_then(file_of);
+    let mut files = ReportFiles::new(&flags.sweep.output, source)?;
     let progress = Progress::new(true);
     let report = threads(&flags.threads)?.install(|| {
         sweep.run(|done, all, report| {
@@ -130,6 +128,8 @@ struct ReportFiles {
     object: OutputFile,
     page: OutputFile,
     plots: PathBuf,
+    /// The file from which the formula is read.
+    source: Option<PathBuf>,
     /// Plots by their names, once there are any.
     plot_files: BTreeMap<String, OutputFile>,
     /// Since the last time they were written.
@@ -143,24 +143,20 @@ const REST: (Duration, u32) = (Duration::from_secs(1), 20);
 
 impl ReportFiles {
     /// Makes the folder, and sure that its files can be written.
-    fn new(folder: &Path) -> Result<Self, Failure> {
+    fn new(folder: &Path, source: Option<PathBuf>) -> Result<Self, Failure> {
         let plots = folder.join("plots");
         fs::create_dir_all(&plots).map_err(|error| Failure::write(&plots, error))?;
-        let file = |name: &str| OutputFile::new(folder.join(name));
+        let file = |name: &str| sparing(source.as_deref(), folder.join(name));
         Ok(Self {
             table: file("report.csv")?,
             object: file("report.json")?,
             page: file("report.html")?,
             plots,
+            source,
             plot_files: BTreeMap::new(),
             watch: Stopwatch::start(),
             rest: Duration::ZERO,
         })
-    }
-
-    /// That none takes the place of a file from which the formula is read.
-    fn spare(&self, source: &Path) -> Result<(), Failure> {
-        [&self.table, &self.object, &self.page].into_iter().try_for_each(|file| file.spares(source))
     }
 
     /// Whether it is time to write them again.
@@ -191,8 +187,15 @@ impl ReportFiles {
         if let Some(file) = self.plot_files.get(&name) {
             return Ok(file.clone());
         }
-        let file = OutputFile::new(self.plots.join(&name))?;
+        let file = sparing(self.source.as_deref(), self.plots.join(&name))?;
         self.plot_files.insert(name, file.clone());
         Ok(file)
     }
+}
+
+/// A file that does not take the place of the one from which the formula is read.
+fn sparing(source: Option<&Path>, path: PathBuf) -> Result<OutputFile, Failure> {
+    let file = OutputFile::new(path)?;
+    source.map_or(Ok(()), |source| file.spares(source))?;
+    Ok(file)
 }

@@ -20,13 +20,15 @@ pub(super) fn suggestion(
     let functions = scope.functions();
     let known: Vec<&str> = values.iter().chain(&functions).copied().collect();
     let as_case = || known.iter().find(|other| other.to_lowercase() == name.to_lowercase());
+    let as_elsewhere = || match is_called {
+        true => written_here(name),
+        false => not_here(name).or_else(|| power(name, &values)),
+    };
     let as_product = || product(name, &values).map(|product| call_of(product, is_called));
     let as_call = || functions_first(name, is_called, &values, &functions);
     as_case()
         .map(|other| format!("did you mean `{other}`?"))
-        .or_else(
-            || if is_called { written_here(name) } else { not_here(name).or_else(|| power(name, &values)) },
-        )
+        .or_else(as_elsewhere)
         .or_else(|| as_product().or_else(as_call).map(|text| format!("did you mean `{text}`?")))
         .or_else(|| nearest(name, known.iter().copied()).map(|other| format!("did you mean `{other}`?")))
 }

@@ -102,7 +102,8 @@ impl Certified {
         Self { places: self.places.ignored(), ..self }
     }
 
-    /// The same with another accuracy than [`Self::ACCURACY`]: coarser is faster, what is said stays proven. Where rounding does not let a root be
+    /// The same with another accuracy than [`Self::ACCURACY`]: what is said stays proven. A coarser one takes fewer
+    /// steps to roots, and leaves more contacts and near misses open. Where rounding does not let a root be
     /// enclosed so narrowly, and wherever this is not positive, it is enclosed as narrowly as rounding lets it.
     pub fn with_accuracy(self, accuracy: f64) -> Self {
         Self { accuracy, ..self }

@@ -142,16 +142,13 @@ impl Places {
 
 #[cfg(test)]
 mod tests {
-    use iso_expr::{Ast, Interpreter};
-
     use super::*;
-    use crate::Surface;
+    use crate::testing::surface_of;
 
     /// Two balls beside each other: in places of one, the other is left out.
     fn kernels() -> Arc<Kernels> {
         let formula = "min((x - 1)^2 + y^2 + z^2 - 0.2, (x + 1)^2 + y^2 + z^2 - 0.2)";
-        let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
-        Arc::new(Kernels::of(&Surface::new(Arc::new(Interpreter), program)).unwrap())
+        Arc::new(Kernels::of(&surface_of(formula)).unwrap())
     }
 
     fn places() -> Places {

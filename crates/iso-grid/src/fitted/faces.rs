@@ -9,8 +9,8 @@ use crate::{Region, Workspace};
 /// A face is cut into so many patches along each of its sides.
 const PATCHES: i32 = 8;
 
-/// A face lies on the surface also where rounding alone parts them, by this part of how long the region and how far the face from zero is at
-/// most: whole waves end at multiples of π, which are no doubles.
+/// A face is taken to be thicker than it is, by this part of the region's length and of how far it is from zero: whole waves end at multiples of
+/// π, which are no doubles.
 const NEAR: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// F counts as zero all over a face where it is so many times less than near by.
@@ -27,11 +27,13 @@ impl Region {
         let aside = ASIDE * self.extent();
         for axis in 0..3 {
             let mut lies_on_it = |at: f64, inside: f64| {
-                let [(face, size), (inside, size_inside)] =
-                    [at, inside].map(|at| self.patches((axis, at), kernel, &mut *workspace));
+                let (face, size) = self.patches((axis, at), kernel, workspace);
+                if 2 * face < (PATCHES * PATCHES) as usize {
+                    return false;
+                }
                 // The surface may pass through many patches of any face, but then it does so near by as well.
-                2 * face >= (PATCHES * PATCHES) as usize
-                    && (2 * inside <= face || size < NOTHING * size_inside)
+                let (inside, size_inside) = self.patches((axis, inside), kernel, workspace);
+                2 * inside <= face || size < NOTHING * size_inside
             };
             let (min, max, aside) = (self.min[axis], self.max[axis], aside[axis]);
             if lies_on_it(min, min + aside) {

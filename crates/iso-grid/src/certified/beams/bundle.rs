@@ -27,8 +27,8 @@ pub(crate) struct Bundle {
     pub(super) wanted: [Row; 2],
     /// Where F is to be taken next, inside `reach`. In the end, about where the root is.
     pub(super) t: Row,
-    /// F at the last place where its slope was taken, one over the slope, and how far t is from there; before the first, the slope in the middle, and
-    /// infinite.
+    /// F at the last place where its slope was taken, one over the slope, and how far t is from there: infinitely far, with the part's slope in the
+    /// middle, before there is any.
     value: Row,
     inverse: Row,
     step: Row,

@@ -306,12 +306,13 @@ impl Model {
 
 #[cfg(test)]
 mod tests {
+    use iso_expr::Scratch;
     use iso_expr::random::Random;
-    use iso_expr::{Ast, Interpreter, Scratch};
 
     use super::*;
     use crate::area::Area;
     use crate::batch::{FormBatch, PointBatch};
+    use crate::testing::surface_of;
     use crate::{Kernel, Raster, Surface, Tile};
 
     const FORMULAS: [&str; 5] = [
@@ -331,11 +332,6 @@ mod tests {
             true => Raster::Parallel { middle, right, down, direction: 0.8 * forward },
             false => Raster::Spreading { eye: middle, forward, right, down },
         }
-    }
-
-    fn surface(formula: &str) -> Surface {
-        let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
-        Surface::new(std::sync::Arc::new(Interpreter), program)
     }
 
     /// The forms of F and its slope along the rays of a beam, all in the same `direction` if it is given.
@@ -362,7 +358,7 @@ mod tests {
         let mut scratch = Scratch::default();
         let mut closest: [f64; 2] = [0.0; 2];
         for round in 0..600 {
-            let surface = surface(FORMULAS[round % FORMULAS.len()]);
+            let surface = surface_of(FORMULAS[round % FORMULAS.len()]);
             let raster = raster(&mut random, round % 2 == 0);
             let tile = Tile::of(&raster, [random.between(-20.0, 20.0), 3.5], 64, 64);
             let side = 1 << random.below(6);
@@ -416,7 +412,7 @@ mod tests {
                 ("x + 2y - z", 0.0),
             ] {
                 let [value, slope] =
-                    forms_of(&surface(formula), (&beam, tile.direction()), &arguments).unwrap();
+                    forms_of(&surface_of(formula), (&beam, tile.direction()), &arguments).unwrap();
                 let reach = Span { start: 1.0, end: 1.001 };
                 let form = Form::affine(&beam, reach, (t, unit), &value, &slope);
                 let off = (form.turn - turn).abs();

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use iso_expr::{Ast, Interpreter};
 use pulp::Arch;
 
 use super::sheaf::Sheaf;
 use super::subdivision::{Known, Subdivision};
-use crate::{Certified, Outcome, Raster, Region, Surface, Tile, Tracer, Workspace};
+use crate::testing::surface_of;
+use crate::{Certified, Outcome, Raster, Region, Tile, Tracer, Workspace};
 
 /// Silhouettes, edges of unions and of intersections, one that is cut, and a limb.
 const FORMULAS: [&str; 5] = [
@@ -21,8 +21,7 @@ const FORMULAS: [&str; 5] = [
 
 /// How the rays of a tile end, and their normals' bits.
 fn ends(formula: &str, arch: Arch) -> (Vec<Outcome>, Vec<[u64; 3]>) {
-    let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
-    let surface = Surface::new(Arc::new(Interpreter), program);
+    let surface = surface_of(formula);
     let region = Region::new(DVec3::splat(-1.5), DVec3::splat(1.5)).unwrap();
     let certified = Certified::new(&surface, region).unwrap();
     let raster = Raster::Parallel {
@@ -52,8 +51,7 @@ fn rays_end_alike_whatever_the_processor_computes_with_at_once() {
 /// A plane is followed along all rays of such a row at once, for which a sheaf has no room.
 #[test]
 fn rows_may_be_longer_than_a_sheaf() {
-    let program = Ast::parse("z - x/10").unwrap().lower(&[]).unwrap().minus_level(0.05).simplified();
-    let surface = Surface::new(Arc::new(Interpreter), program);
+    let surface = surface_of("z - x/10 = 0.05");
     let region = Region::new(DVec3::splat(-1.0), DVec3::splat(1.0)).unwrap();
     let certified = Certified::new(&surface, region).unwrap();
     let width = 2 * Sheaf::MOST + 88;
@@ -78,8 +76,7 @@ fn rows_may_be_longer_than_a_sheaf() {
 /// Kernels of the same function on the same box are known by their number, but not where less is left of them: that holds on a slab alone.
 #[test]
 fn what_is_left_on_a_slab_is_not_known_elsewhere() {
-    let program = Ast::parse(FORMULAS[1]).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
-    let surface = Surface::new(Arc::new(Interpreter), program);
+    let surface = surface_of(FORMULAS[1]);
     let region = Region::new(DVec3::splat(-1.5), DVec3::splat(1.5)).unwrap();
     let certified = Certified::new(&surface, region).unwrap();
     let rays = [crate::Ray { origin: 4.0 * DVec3::Z, direction: DVec3::NEG_Z }];
