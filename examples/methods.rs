@@ -13,8 +13,8 @@ use std::time::Duration;
 
 use iso_expr::Engine;
 use iso_grid::{
-    Certified, Direct, Grid, GridSettings, Hit, Kernel, Octree, Outcome, Ray, RootFinding, Surface, Tracer,
-    Workspace,
+    Certified, Direct, Grid, GridSettings, Hit, Kernel, Octree, Outcome, Outcomes, Ray, RootFinding, Surface,
+    Tracer, Workspace,
 };
 use iso_jit::Jit;
 use iso_render::Stopwatch;
@@ -127,7 +127,7 @@ struct Tally {
 impl Tally {
     fn of(scene: &Scene, surface: &Surface, verdicts: &[Verdict], method: &Method) -> Self {
         let rays: Vec<Ray> = verdicts.iter().map(|verdict| verdict.ray).collect();
-        let mut outcomes = vec![Outcome::Miss; rays.len()];
+        let mut outcomes = Outcomes::default();
         let mut workspace = Workspace::default();
         compile(surface);
         let watch = Stopwatch::start();
@@ -139,7 +139,7 @@ impl Tally {
         let evaluations =
             counters.preprocess_evaluations + counters.trace_evaluations + counters.box_evaluations;
         let mut tally = Self { rays: rays.len(), evaluations, time, ..Self::default() };
-        for (verdict, outcome) in verdicts.iter().zip(outcomes) {
+        for (verdict, outcome) in verdicts.iter().zip(outcomes.iter()) {
             tally.count(verdict, outcome);
         }
         tally

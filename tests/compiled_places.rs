@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use iso_expr::{Ast, Engine, Interpreter};
-use iso_grid::{Certified, Kernel, Outcome, Raster, Region, Surface, Tile, Tracer, Workspace};
+use iso_grid::{
+    Certified, Kernel, Outcome, OutcomeKind, Outcomes, Raster, Region, Surface, Tile, Tracer, Workspace,
+};
 use iso_jit::Jit;
 
 /// A quartic inside a ball: in most places one of both decides. To the second a term is added that has no affine form, so that it is
@@ -35,7 +37,7 @@ fn certified(engine: Arc<dyn Engine>, formula: &str) -> Certified {
 }
 
 /// How the rays end in so many pictures.
-fn pictures(tracer: &Certified, count: usize, workspace: &mut Workspace) -> Vec<Vec<Outcome>> {
+fn pictures(tracer: &Certified, count: usize, workspace: &mut Workspace) -> Vec<Outcomes> {
     let spacing = 2.6 / SIDE as f64;
     let raster = Raster::Parallel {
         middle: DVec3::new(0.9, -2.8, 0.6),
@@ -45,7 +47,7 @@ fn pictures(tracer: &Certified, count: usize, workspace: &mut Workspace) -> Vec<
     };
     let first = 0.5 - 0.5 * SIDE as f64;
     let picture = |_| {
-        let mut outcomes = vec![Outcome::Miss; SIDE * SIDE];
+        let mut outcomes = Outcomes::default();
         tracer.trace_tile(workspace, Tile::of(&raster, [first, first], SIDE, SIDE), &mut outcomes, None);
         outcomes
     };
@@ -60,7 +62,7 @@ fn compiled_places_end_rays_as_interpreted_ones_do() {
         let operations = workspace.counters.operations;
         assert!(operations > 1 << 25, "{operations} operations are too few for anything to be compiled");
         let interpreted = pictures(&certified(Arc::new(Interpreter), formula), 1, &mut workspace);
-        let hits = interpreted[0].iter().filter(|outcome| matches!(outcome, Outcome::Hit(_))).count();
+        let hits = interpreted[0].kinds().iter().filter(|kind| **kind == OutcomeKind::Hit).count();
         assert!(hits > 500, "{hits} rays hit");
         for outcomes in native {
             assert_eq!(outcomes, interpreted[0], "{formula}");
@@ -102,7 +104,7 @@ fn places_take_fewer_operations_and_prove_the_same() {
     let everywhere = pictures(&whole, 1, &mut workspace);
     let by_whole = workspace.counters.operations;
     assert!(2 * operations < by_whole, "{operations} operations in places, {by_whole} by the whole formula");
-    for (a, b) in in_places[0].iter().zip(&everywhere[0]) {
+    for (a, b) in in_places[0].iter().zip(everywhere[0].iter()) {
         let agree = match (a, b) {
             (Outcome::Hit(a), Outcome::Hit(b)) => {
                 a.bracket.start <= b.bracket.end && b.bracket.start <= a.bracket.end

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use iso_expr::{Engine, Interpreter};
-use iso_grid::{Certified, Hit, Outcome, Ray, Tile, Tracer, Workspace, normals};
+use iso_grid::{Certified, Hit, Outcome, Outcomes, Ray, Tile, Tracer, Workspace, normals};
 use iso_jit::Jit;
 use scenes::rounding::Rounding;
 use scenes::{Scene, Status, Verdict};
@@ -56,39 +56,36 @@ fn both_engines_say_the_same_of_tiles() {
         let outcomes = [Arc::new(Interpreter) as Arc<dyn Engine>, Arc::clone(&jit)].map(|engine| {
             let surface = scene.surface(engine);
             let tracer = Certified::new(&surface, scene.region()).expect("the scenes compile");
-            let mut outcomes = vec![Outcome::Miss; rays.len()];
-            trace_pictures(&tracer, &mut Workspace::default(), &rays, &mut outcomes);
-            outcomes
+            trace_pictures(&tracer, &mut Workspace::default(), &rays)
         });
         assert_eq!(outcomes[0], outcomes[1], "{}", scene.name);
     }
 }
 
 /// A way to trace all rays of a scene.
-type Trace = fn(&Certified, &mut Workspace, &[Ray], &mut [Outcome]);
+type Trace = fn(&Certified, &mut Workspace, &[Ray]) -> Outcomes;
 
 /// Traces each ray alone.
-fn trace_each(tracer: &Certified, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]) {
-    tracer.trace(workspace, rays, outcomes);
+fn trace_each(tracer: &Certified, workspace: &mut Workspace, rays: &[Ray]) -> Outcomes {
+    let mut outcomes = Outcomes::default();
+    tracer.trace(workspace, rays, &mut outcomes);
+    outcomes
 }
 
 /// The sides of the square pictures whose rays make up a scene, one after the other; not all scenes have the last one.
 const SIDES: [usize; 3] = [24, 16, 12];
 
 /// Traces each of the pictures that make up a scene as one tile.
-fn trace_pictures(
-    tracer: &Certified,
-    workspace: &mut Workspace,
-    mut rays: &[Ray],
-    mut outcomes: &mut [Outcome],
-) {
+fn trace_pictures(tracer: &Certified, workspace: &mut Workspace, mut rays: &[Ray]) -> Outcomes {
+    let (mut all, mut outcomes) = (Vec::new(), Outcomes::default());
     for side in SIDES {
-        let (tile, other_rays) = rays.split_at(rays.len().min(side * side));
-        let (ends, other_outcomes) = outcomes.split_at_mut(tile.len());
-        tracer.trace_tile(workspace, Tile::listed(tile, side), ends, None);
-        (rays, outcomes) = (other_rays, other_outcomes);
+        let (tile, others) = rays.split_at(rays.len().min(side * side));
+        tracer.trace_tile(workspace, Tile::listed(tile, side), &mut outcomes, None);
+        all.extend(outcomes.iter());
+        rays = others;
     }
     assert!(rays.is_empty(), "a scene has three pictures");
+    all.into_iter().collect()
 }
 
 /// Traces every ray of every scene. All that is wrong is told at once.
@@ -146,8 +143,7 @@ impl Comparison {
         let verdicts = scene.verdicts();
         let rays: Vec<Ray> = verdicts.iter().map(|verdict| verdict.ray).collect();
         let mut workspace = Workspace::default();
-        let mut outcomes = vec![Outcome::Miss; rays.len()];
-        trace(&tracer, &mut workspace, &rays, &mut outcomes);
+        let outcomes = trace(&tracer, &mut workspace, &rays);
         let mut found = vec![DVec3::NAN; rays.len()];
         normals(&surface, None, &mut workspace, rays.as_slice().into(), &outcomes, &mut found)
             .expect("the scenes compile");
@@ -164,7 +160,7 @@ impl Comparison {
         };
         for (row, verdict) in verdicts.iter().enumerate() {
             let rounding = || Rounding::at(&surface, verdict);
-            if let Err(contradiction) = comparison.check(verdict, outcomes[row], found[row], rounding) {
+            if let Err(contradiction) = comparison.check(verdict, outcomes.get(row), found[row], rounding) {
                 comparison.contradictions.push(format!("row {row}: {contradiction}"));
             }
         }

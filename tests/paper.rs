@@ -11,8 +11,8 @@ use std::sync::Arc;
 
 use iso_expr::{Engine, Interpreter};
 use iso_grid::{
-    Counters, Direct, Grid, GridSettings, Octree, Outcome, Ray, Region, RootFinding, Surface, Tracer,
-    Workspace,
+    Counters, Direct, Grid, GridSettings, Octree, Outcome, Outcomes, Ray, Region, RootFinding, Surface,
+    Tracer, Workspace,
 };
 use iso_jit::Jit;
 use iso_render::Stopwatch;
@@ -127,7 +127,7 @@ fn direct(surface: &Surface, region: Region) -> Box<dyn Tracer> {
 /// One scene's rays, compared.
 struct Comparison {
     name: String,
-    outcomes: Vec<Outcome>,
+    outcomes: Outcomes,
     /// Hits that are the oracle's.
     met: usize,
     /// Rays that end at a root behind the oracle's.
@@ -152,7 +152,7 @@ impl Comparison {
         let verdicts = scene.verdicts();
         let rays: Vec<Ray> = verdicts.iter().map(|verdict| verdict.ray).collect();
         let mut workspace = Workspace::default();
-        let mut outcomes = vec![Outcome::Miss; rays.len()];
+        let mut outcomes = Outcomes::default();
         let mut watch = Stopwatch::start();
         let tracer = method(&surface, scene.region());
         let prepared = watch.lap();
@@ -171,7 +171,7 @@ impl Comparison {
             contradictions: Vec::new(),
         };
         let interpreted = scene.surface(Arc::new(Interpreter));
-        for (row, (verdict, outcome)) in verdicts.iter().zip(outcomes).enumerate() {
+        for (row, (verdict, outcome)) in verdicts.iter().zip(outcomes.iter()).enumerate() {
             if let Err(contradiction) = comparison.check(&interpreted, verdict, outcome) {
                 comparison.contradictions.push(format!("{}, row {row}: {contradiction}", scene.name));
             }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use iso_expr::CompileError;
-use iso_grid::{Hit, Kernel, Outcome, Ray, Surface, Workspace, normals};
+use iso_grid::{Hit, Kernel, Outcome, Outcomes, Ray, Surface, Workspace, normals};
 
 use crate::rounding::rounded;
 
@@ -10,7 +10,7 @@ use crate::rounding::rounded;
 #[derive(Clone, Debug)]
 pub(crate) struct Answers {
     /// How each ray ended.
-    pub(crate) outcomes: Vec<Outcome>,
+    pub(crate) outcomes: Outcomes,
     /// The normal of each end.
     pub(crate) normals: Vec<DVec3>,
 }
@@ -24,7 +24,7 @@ impl Answers {
         surface: &Surface,
         workspace: &mut Workspace,
         rays: &[Ray],
-        outcomes: Vec<Outcome>,
+        outcomes: Outcomes,
     ) -> Result<Self, CompileError> {
         let mut found = vec![DVec3::NAN; rays.len()];
         normals(surface, None, workspace, rays.into(), &outcomes, &mut found)?;
@@ -87,7 +87,7 @@ pub(crate) fn compare(
     let residuals = residuals(surface, rays, &answers.outcomes)?;
     let verdict = |place: usize| {
         let ray = &rays[place];
-        match agreement(ray, &proven.outcomes[place], &answers.outcomes[place]) {
+        match agreement(ray, proven.outcomes.get(place), answers.outcomes.get(place)) {
             Agreement::Root { proven: expected, found } => {
                 let length = (found.t - expected.t).abs();
                 let [residual, rounding] = residuals[place];
@@ -112,8 +112,8 @@ enum Agreement {
 }
 
 /// A touch may be no root: F is only known to come within rounding of zero there. So it may be passed by.
-fn agreement(ray: &Ray, proven: &Outcome, answer: &Outcome) -> Agreement {
-    Agreement::Verdict(match (*proven, *answer) {
+fn agreement(ray: &Ray, proven: Outcome, answer: Outcome) -> Agreement {
+    Agreement::Verdict(match (proven, answer) {
         (Outcome::Hit(proven) | Outcome::Touch(proven), Outcome::Hit(found) | Outcome::Touch(found))
             if is_same(ray, proven, found) =>
         {
@@ -162,12 +162,8 @@ fn angle(a: DVec3, b: DVec3) -> f64 {
 }
 
 /// |F − C| where each ray ends and the bound of its rounding error; NaN where nothing was found.
-fn residuals(surface: &Surface, rays: &[Ray], outcomes: &[Outcome]) -> Result<Vec<[f64; 2]>, CompileError> {
-    let found = |(ray, outcome): (&Ray, &Outcome)| match outcome {
-        Outcome::Hit(hit) | Outcome::Touch(hit) => ray.at(hit.t),
-        Outcome::Miss | Outcome::Undecided(_) => DVec3::NAN,
-    };
-    let points: Vec<DVec3> = rays.iter().zip(outcomes).map(found).collect();
+fn residuals(surface: &Surface, rays: &[Ray], outcomes: &Outcomes) -> Result<Vec<[f64; 2]>, CompileError> {
+    let points: Vec<DVec3> = rays.iter().zip(outcomes.distances()).map(|(ray, t)| ray.at(*t)).collect();
     let [x, y, z] = [0, 1, 2].map(|axis| points.iter().map(|point| point[axis]).collect::<Vec<f64>>());
     let (values, enclosures) =
         (surface.over_points(Kernel::Values)?, surface.over_boxes(Kernel::ValueEnclosures)?);
@@ -192,7 +188,7 @@ mod tests {
     }
 
     fn verdict(proven: Outcome, answer: Outcome) -> Option<Verdict> {
-        match agreement(&RAY, &proven, &answer) {
+        match agreement(&RAY, proven, answer) {
             Agreement::Root { .. } => None,
             Agreement::Verdict(verdict) => Some(verdict),
         }

@@ -207,10 +207,10 @@ fn write_points(picture: &Picture, writer: &mut dyn Write) -> io::Result<()> {
     let (width, height) = (picture.size.width(), picture.size.height());
     for (row, column) in (0..height).flat_map(|row| (0..width).map(move |column| (row, column))) {
         let pixel = picture.size.offset(column, row);
-        let (point, normal) = (picture.points[pixel], picture.normals[pixel]);
+        let (point, normal) = (picture.points.get(pixel), picture.normals.get(pixel));
         let status = picture.statuses[pixel];
         let head = [column.to_string(), row.to_string(), status_name(status).to_owned()];
-        let mut numbers = [picture.depth[pixel], point.x, point.y, point.z].map(digits).to_vec();
+        let mut numbers = [picture.depth.get(pixel), point.x, point.y, point.z].map(digits).to_vec();
         numbers.extend(<[f32; 3]>::from(normal).map(digits));
         if status == Status::Unfinished {
             numbers.fill(digits(f64::NAN));

@@ -9,7 +9,7 @@ use pulp::{Simd, WithSimd};
 use crate::area::Area;
 use crate::batch::PointBatch;
 use crate::lanes::{Lanes, ROW, Row, parts};
-use crate::{Hit, Kernel, Outcome, Span, Surface, Tile, Tracer, Workspace};
+use crate::{Hit, Kernel, Outcome, OutcomeKind, Outcomes, Span, Surface, Tile, Tracer, Workspace};
 
 /// How many rows of points are asked about by one call of the kernel.
 const ROWS: usize = 32;
@@ -22,7 +22,7 @@ const BLOCK: usize = 8;
 const APPROACH: [i32; 11] = [-40, -37, -34, -31, -28, -25, -22, -19, -16, -13, -10];
 
 /// The unit normal ∇F/|∇F| at each hit and touch, towards larger F whichever way the ray comes, and nothing new for other outcomes.
-/// Both slices hold something for each ray of the tile, the normals NaN where they are not known yet: others were found on the way
+/// There is one of both for each ray of the tile, the normals NaN where they are not known yet: others were found on the way
 /// by [`Tracer::trace_tile`] and stay.
 ///
 /// A `tracer` for the surface may know [shorter formulas](Tracer::gradients_on) around neighbouring rays, which give the same normals. Those that
@@ -40,7 +40,7 @@ pub fn normals(
     tracer: Option<&dyn Tracer>,
     workspace: &mut Workspace,
     tile: Tile<'_>,
-    outcomes: &[Outcome],
+    outcomes: &Outcomes,
     normals: &mut [DVec3],
 ) -> Result<(), CompileError> {
     assert!(
@@ -55,9 +55,14 @@ pub fn normals(
     for block in (Area { column: 0, row: 0, width: tile.width(), height: tile.height() }).blocks(side) {
         let first = asked.len();
         for places in block.places(tile.width()) {
-            let known = outcomes[places.clone()].iter().zip(&normals[places.clone()]);
-            for (place, (outcome, _)) in places.zip(known).filter(|(_, (_, normal))| normal.x.is_nan()) {
-                match *outcome {
+            let kinds = outcomes.kinds()[places.clone()].iter();
+            let known = normals[places.clone()].iter();
+            let is_wanted = |(kind, normal): (&OutcomeKind, &DVec3)| {
+                normal.x.is_nan() && matches!(kind, OutcomeKind::Hit | OutcomeKind::Touch)
+            };
+            for place in places.zip(kinds.zip(known)).filter_map(|(place, of)| is_wanted(of).then_some(place))
+            {
+                match outcomes.get(place) {
                     Outcome::Hit(Hit { t, .. }) => asked.push(Asked { place, t }),
                     // The gradient there may be nothing but rounding.
                     Outcome::Touch(Hit { bracket, .. }) => others.push(Met { place, bracket }),
@@ -110,9 +115,9 @@ fn kernel_on(tracer: &dyn Tracer, tile: Tile<'_>, asked: &[Asked]) -> Option<Arc
 }
 
 /// The hits that were asked about and have no normal.
-fn unanswered(asked: &[Asked], outcomes: &[Outcome], normals: &[DVec3]) -> impl Iterator<Item = Met> {
+fn unanswered(asked: &[Asked], outcomes: &Outcomes, normals: &[DVec3]) -> impl Iterator<Item = Met> {
     asked.iter().filter(|asked| normals[asked.place].x.is_nan()).filter_map(|Asked { place, .. }| {
-        match outcomes[*place] {
+        match outcomes.get(*place) {
             Outcome::Hit(Hit { bracket, .. }) => Some(Met { place: *place, bracket }),
             _ => None,
         }

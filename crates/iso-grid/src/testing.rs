@@ -1,5 +1,6 @@
 //! What tests share: surfaces given by functions of Rust, and rays of every kind.
 
+use std::iter;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -10,7 +11,7 @@ use iso_expr::{
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-use crate::{Outcome, Ray, Surface, Tracer, Workspace, normals};
+use crate::{Outcome, Outcomes, Ray, Surface, Tracer, Workspace, normals};
 
 /// F − C at a point.
 pub(crate) type Function = fn(DVec3) -> f64;
@@ -84,16 +85,23 @@ pub(crate) fn surface_without_gradient(value: Function) -> Surface {
 
 /// How the search along one ray ends.
 pub(crate) fn trace(tracer: &dyn Tracer, ray: Ray) -> Outcome {
-    let mut outcomes = [Outcome::Miss];
+    let mut outcomes = Outcomes::default();
     tracer.trace(&mut Workspace::default(), &[ray], &mut outcomes);
-    outcomes[0]
+    outcomes.get(0)
 }
 
 /// The normal where a ray ends.
 pub(crate) fn normal(surface: &Surface, ray: Ray, outcome: Outcome) -> DVec3 {
     let mut found = [DVec3::NAN];
-    normals(surface, None, &mut Workspace::default(), [ray].as_slice().into(), &[outcome], &mut found)
-        .expect("functions are not compiled");
+    normals(
+        surface,
+        None,
+        &mut Workspace::default(),
+        [ray].as_slice().into(),
+        &iter::once(outcome).collect(),
+        &mut found,
+    )
+    .expect("functions are not compiled");
     found[0]
 }
 

@@ -9,42 +9,18 @@ use pulp::Arch;
 use crate::batch::{BoxBatch, FormBatch, PointBatch};
 use crate::certified::{Ahead, Entry, Expansion, Memory};
 use crate::normals::Asked;
-use crate::{Counters, Ray, Span, Tile};
-
-/// A point of the surface on a ray.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit {
-    /// Where on the ray, inside `bracket`.
-    pub t: f64,
-    /// A stretch that holds the root. Its meaning is the method's: between samples of unlike sign, or a proven enclosure.
-    pub bracket: Span,
-}
-
-/// How the search for the first root along a ray ended.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Outcome {
-    /// The ray crosses the surface.
-    Hit(Hit),
-    /// The ray comes so close to the surface that rounding cannot tell a contact from a near miss, as at a root of even multiplicity or a
-    /// plateau.
-    Touch(Hit),
-    /// The method found no root. Whether that is proven is the method's to say.
-    Miss,
-    /// The method could not decide what happens in this stretch.
-    Undecided(Span),
-}
+use crate::{Counters, OutcomeKind, Outcomes, Ray, Tile};
 
 /// A method of intersection, ready for its surface and region.
 pub trait Tracer: Send + Sync {
-    /// Says for each ray how the search along it ended. Both slices are equally long.
+    /// Says for each ray how the search along it ended, whatever stood in `outcomes` before.
     ///
     /// The outcome of a ray depends on that ray alone, not on its neighbours in the slice, nor on earlier calls.
     ///
     /// When the surface's [`Stop`](crate::Stop) is requested, this returns soon, and no outcome means anything.
-    fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]);
+    fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut Outcomes);
 
-    /// The same for a tile, row by row; says whether any ray ends elsewhere than in a miss. All outcomes have to be misses to begin with, for
-    /// where nothing is found they may be left as they are.
+    /// The same for a tile, row by row; says whether any ray ends elsewhere than in a miss.
     ///
     /// A method may share work between the rays of a tile. What it says of each is as true as if it were traced alone, but
     /// where in its bracket a root is placed, and how wide the bracket is, may depend on the other rays of the tile.
@@ -55,7 +31,7 @@ pub trait Tracer: Send + Sync {
         &self,
         workspace: &mut Workspace,
         tile: Tile<'_>,
-        outcomes: &mut [Outcome],
+        outcomes: &mut Outcomes,
         normals: Option<&mut [DVec3]>,
     ) -> bool {
         let _ = normals;
@@ -78,10 +54,10 @@ pub(crate) fn trace_each<T: Tracer + ?Sized>(
     tracer: &T,
     workspace: &mut Workspace,
     tile: Tile<'_>,
-    outcomes: &mut [Outcome],
+    outcomes: &mut Outcomes,
 ) -> bool {
     tracer.trace(workspace, &tile.rays().collect::<Vec<_>>(), outcomes);
-    outcomes.iter().any(|outcome| *outcome != Outcome::Miss)
+    outcomes.kinds().iter().any(|kind| *kind != OutcomeKind::Miss)
 }
 
 /// A thread's working memory and counts, reused from call to call. It carries no results but its counters.

@@ -6,7 +6,7 @@ use glam::DVec3;
 use iso_expr::random::Random;
 use iso_expr::{Ast, Interpreter, Program};
 use iso_grid::{
-    Certified, Counters, Hit, Outcome, Raster, Ray, Region, Span, Surface, Tile, Tracer, Workspace,
+    Certified, Counters, Hit, Outcome, Outcomes, Raster, Ray, Region, Span, Surface, Tile, Tracer, Workspace,
 };
 
 /// Formulas, half sides of their regions, and what they are tried for.
@@ -190,17 +190,17 @@ fn together(tracer: &dyn Tracer, view: &View) -> Vec<Vec<Outcome>> {
     let of_raster = view.raster.iter().map(|raster| Tile::of(raster, first(width, height), width, height));
     let tiles = of_raster.chain([Tile::listed(&view.rays, width)]);
     let trace = |tile| {
-        let mut outcomes = vec![Outcome::Miss; view.rays.len()];
+        let mut outcomes = Outcomes::default();
         tracer.trace_tile(&mut Workspace::default(), tile, &mut outcomes, None);
-        outcomes
+        outcomes.iter().collect()
     };
     tiles.map(trace).collect()
 }
 
 fn alone(tracer: &dyn Tracer, rays: &[Ray]) -> Vec<Outcome> {
-    let mut outcomes = vec![Outcome::Miss; rays.len()];
+    let mut outcomes = Outcomes::default();
     tracer.trace(&mut Workspace::default(), rays, &mut outcomes);
-    outcomes
+    outcomes.iter().collect()
 }
 
 fn overlap(a: Span, b: Span) -> bool {
@@ -458,9 +458,9 @@ fn rays_of_a_tile_may_be_too_slow() {
 
 /// What a tile holds, and what that took.
 fn counted(tracer: &Certified, tile: Tile<'_>) -> (Vec<Outcome>, Counters) {
-    let (mut workspace, mut outcomes) = (Workspace::default(), vec![Outcome::Miss; tile.len()]);
+    let (mut workspace, mut outcomes) = (Workspace::default(), Outcomes::default());
     tracer.trace_tile(&mut workspace, tile, &mut outcomes, None);
-    (outcomes, workspace.counters)
+    (outcomes.iter().collect(), workspace.counters)
 }
 
 #[test]

@@ -7,7 +7,7 @@ use glam::DVec3;
 use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::random::Random;
 use iso_expr::{Ast, Decoration, Engine, Interpreter, Interval, Operation, Program, Scratch};
-use iso_grid::{Certified, Hit, Outcome, Ray, Region, Span, Surface, Tile, Tracer, Workspace};
+use iso_grid::{Certified, Hit, Outcome, Outcomes, Ray, Region, Span, Surface, Tile, Tracer, Workspace};
 
 const X: DVec3 = DVec3::X;
 
@@ -19,9 +19,9 @@ fn certified(formula: &str, half_side: f64) -> Certified {
 }
 
 fn trace(tracer: &Certified, rays: &[Ray]) -> Vec<Outcome> {
-    let mut outcomes = vec![Outcome::Miss; rays.len()];
+    let mut outcomes = Outcomes::default();
     tracer.trace(&mut Workspace::default(), rays, &mut outcomes);
-    outcomes
+    outcomes.iter().collect()
 }
 
 fn end(formula: &str, half_side: f64, origin: DVec3, direction: DVec3) -> Outcome {
@@ -253,10 +253,10 @@ fn a_coarser_accuracy_gives_a_wider_enclosure_that_holds_the_root() {
 fn an_accuracy_beyond_rounding_gives_what_rounding_allows() {
     for accuracy in [1e-300, 0.0, -1.0, f64::NAN] {
         let tracer = certified("x^3 + x - 0.3", 1.5).with_accuracy(accuracy);
-        let (rays, mut outcomes) = ([Ray { origin: -3.0 * X, direction: X }; 64], [Outcome::Miss; 64]);
+        let (rays, mut outcomes) = ([Ray { origin: -3.0 * X, direction: X }; 64], Outcomes::default());
         tracer.trace_tile(&mut Workspace::default(), Tile::listed(&rays, 8), &mut outcomes, None);
-        for outcome in trace(&tracer, &rays[..1]).iter().chain(&outcomes) {
-            let Outcome::Hit(Hit { bracket: Span { start, end }, .. }) = *outcome else {
+        for outcome in trace(&tracer, &rays[..1]).into_iter().chain(outcomes.iter()) {
+            let Outcome::Hit(Hit { bracket: Span { start, end }, .. }) = outcome else {
                 panic!("{accuracy}: {outcome:?}")
             };
             assert!(end - start <= 64.0 * f64::EPSILON * end, "{accuracy}: {outcome:?}");

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use iso_expr::random::Random;
 use iso_expr::{Ast, Interpreter};
-use iso_grid::{Certified, Outcome, Raster, Ray, Region, Surface, Tile, Tracer, Workspace};
+use iso_grid::{Certified, Outcome, Outcomes, Raster, Ray, Region, Surface, Tile, Tracer, Workspace};
 
 /// Columns and rows of a picture.
 const SIDE: usize = 40;
@@ -147,9 +147,9 @@ fn cut_quadrics_are_met_where_quadratic_equations_say() {
         let region = Region::new(DVec3::NEG_ONE, DVec3::ONE).unwrap();
         let certified = Certified::new(&surface, region).unwrap().with_accuracy(accuracy);
         let tile = Tile::of(&raster, [0.5 - 0.5 * SIDE as f64; 2], SIDE, SIDE);
-        let mut outcomes = vec![Outcome::Miss; tile.len()];
+        let mut outcomes = Outcomes::default();
         certified.trace_tile(&mut Workspace::default(), tile, &mut outcomes, None);
-        for (ray, outcome) in tile.rays().zip(&outcomes) {
+        for (ray, outcome) in tile.rays().zip(outcomes.iter()) {
             let Some(expected) = scene.first_root(ray) else { continue };
             match (expected, outcome) {
                 (Some(t), Outcome::Hit(hit)) => {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use iso_expr::{Ast, Interpreter};
-use iso_grid::{Counters, Method, Outcome, Ray, Region, Surface, Workspace};
+use iso_grid::{Counters, Method, Outcomes, Ray, Region, Surface, Workspace};
 
 fn surface(formula: &str) -> Surface {
     let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().program().simplified();
@@ -26,10 +26,10 @@ fn rays(view: u32) -> Vec<Ray> {
         .collect()
 }
 
-fn follow(surface: &Surface, region: Region, rays: &[Ray]) -> (Vec<Outcome>, Counters) {
+fn follow(surface: &Surface, region: Region, rays: &[Ray]) -> (Outcomes, Counters) {
     let tracer = Method::CERTIFIED.prepare(surface, region).unwrap();
     let mut workspace = Workspace::default();
-    let mut outcomes = vec![Outcome::Miss; rays.len()];
+    let mut outcomes = Outcomes::default();
     tracer.trace(&mut workspace, rays, &mut outcomes);
     (outcomes, workspace.counters)
 }

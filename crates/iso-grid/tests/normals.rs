@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use iso_expr::{Ast, Interpreter};
-use iso_grid::{Certified, Outcome, Raster, Region, Surface, Tile, Tracer, Workspace, normals};
+use iso_grid::{
+    Certified, Outcome, OutcomeKind, Outcomes, Raster, Region, Surface, Tile, Tracer, Workspace, normals,
+};
 
 #[test]
 fn what_is_left_of_a_formula_has_the_normals_of_all_of_it() {
@@ -28,7 +30,7 @@ fn what_is_left_of_a_formula_has_the_normals_of_all_of_it() {
     };
     let tile = Tile::of(&raster, [-31.5, -31.5], 61, 64);
     let mut workspace = Workspace::default();
-    let mut outcomes = vec![Outcome::Miss; tile.len()];
+    let mut outcomes = Outcomes::default();
     tracer.trace_tile(&mut workspace, tile, &mut outcomes, None);
     let mut found = |tracer: Option<&dyn Tracer>| {
         let mut found = vec![DVec3::NAN; tile.len()];
@@ -38,7 +40,7 @@ fn what_is_left_of_a_formula_has_the_normals_of_all_of_it() {
     let (here, everywhere) = (found(Some(&tracer)), found(None));
     let bits = |normal: &DVec3| normal.to_array().map(f64::to_bits);
     assert!(here.iter().map(bits).eq(everywhere.iter().map(bits)));
-    let hits = outcomes.iter().filter(|outcome| matches!(outcome, Outcome::Hit(_))).count();
+    let hits = outcomes.kinds().iter().filter(|kind| **kind == OutcomeKind::Hit).count();
     assert_eq!(here.iter().filter(|normal| (normal.length() - 1.0).abs() < 1e-12).count(), hits);
     assert!(hits > tile.len() / 4, "{hits} hits");
 }
@@ -68,8 +70,8 @@ fn hits_on_the_edge_of_a_cut_have_the_normals_of_what_is_cut() {
 }
 
 /// Where a tracer says that rays of a tile meet the surface, and the normals that it comes by on the way.
-fn traced(tracer: &Certified, tile: Tile<'_>) -> (Vec<Outcome>, Vec<DVec3>) {
-    let mut outcomes = vec![Outcome::Miss; tile.len()];
+fn traced(tracer: &Certified, tile: Tile<'_>) -> (Outcomes, Vec<DVec3>) {
+    let mut outcomes = Outcomes::default();
     let mut normals = vec![DVec3::NAN; tile.len()];
     tracer.trace_tile(&mut Workspace::default(), tile, &mut outcomes, Some(&mut normals));
     (outcomes, normals)
@@ -99,7 +101,7 @@ fn normals_found_on_the_way_are_those_of_the_hits_and_change_no_outcome() {
         for raster in &rasters {
             let tile = Tile::of(raster, [-31.5, -31.5], 64, 64);
             let (outcomes, on_the_way) = traced(&tracer, tile);
-            let (mut alone, mut all) = (vec![Outcome::Miss; tile.len()], vec![DVec3::NAN; tile.len()]);
+            let (mut alone, mut all) = (Outcomes::default(), vec![DVec3::NAN; tile.len()]);
             let mut workspace = Workspace::default();
             tracer.trace_tile(&mut workspace, tile, &mut alone, None);
             assert_eq!(outcomes, alone, "{formula}");
@@ -129,6 +131,6 @@ fn no_rays_have_no_normals() {
         Raster::Parallel { middle: DVec3::ZERO, right: DVec3::X, down: DVec3::Y, direction: DVec3::Z };
     for (width, height) in [(0, 0), (0, 3), (3, 0)] {
         let tile = Tile::of(&raster, [0.0, 0.0], width, height);
-        normals(&surface, None, &mut Workspace::default(), tile, &[], &mut []).unwrap();
+        normals(&surface, None, &mut Workspace::default(), tile, &Outcomes::default(), &mut []).unwrap();
     }
 }

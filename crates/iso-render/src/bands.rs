@@ -3,11 +3,10 @@
 use std::iter::repeat_with;
 use std::sync::Mutex;
 
-use bytemuck::cast_slice_mut;
 use glam::{DVec3, Vec3};
 use iso_grid::Outcome;
-use pulp::Arch;
 
+use crate::mosaic::{Strip, TILE};
 use crate::{Picture, Status};
 
 /// Some rows of every layer of a picture; layers that the picture does not keep are empty.
@@ -15,23 +14,23 @@ pub(crate) struct Band<'a> {
     is_clear: bool,
     pub(crate) color: &'a mut [[u8; 3]],
     pub(crate) coverage: &'a mut [u8],
-    pub(crate) depth: &'a mut [f64],
-    pub(crate) normals: &'a mut [Vec3],
-    pub(crate) points: &'a mut [DVec3],
+    pub(crate) depth: Strip<'a, f64>,
+    pub(crate) normals: Strip<'a, Vec3>,
+    pub(crate) points: Strip<'a, DVec3>,
     pub(crate) statuses: &'a mut [Status],
     pub(crate) outcomes: &'a mut [Outcome],
 }
 
 impl<'a> Band<'a> {
-    /// The bands of `rows` rows each, from top to bottom; the last one may have fewer.
-    pub(crate) fn all(picture: &'a mut Picture, rows: u32) -> Vec<Mutex<Self>> {
-        let pixels = rows as usize * picture.size.width() as usize;
-        let count = picture.size.height().div_ceil(rows);
+    /// The bands of a row of tiles each, from top to bottom.
+    pub(crate) fn all(picture: &'a mut Picture) -> Vec<Mutex<Self>> {
+        let pixels = TILE as usize * picture.size.width() as usize;
+        let count = picture.size.height().div_ceil(TILE);
         let mut color = cut(&mut picture.color, pixels);
         let mut coverage = cut(&mut picture.coverage, pixels);
-        let mut depth = cut(&mut picture.depth, pixels);
-        let mut normals = cut(&mut picture.normals, pixels);
-        let mut points = cut(&mut picture.points, pixels);
+        let mut depth = picture.depth.strips();
+        let mut normals = picture.normals.strips();
+        let mut points = picture.points.strips();
         let mut statuses = cut(&mut picture.statuses, pixels);
         let mut outcomes = cut(&mut picture.outcomes, pixels);
         let band = || {
@@ -49,19 +48,13 @@ impl<'a> Band<'a> {
         repeat_with(band).take(count as usize).collect()
     }
 
-    /// Says of all pixels that nothing is there, if that was not done before. Colours are left as they are.
+    /// Says of all pixels that nothing is there, if that was not done before. Colours and what lies tile by tile are left as they are.
     ///
     /// Whole rows take a third of the time that their parts take tile by tile.
     pub(crate) fn clear(&mut self) {
         if !self.is_clear {
             self.is_clear = true;
             self.coverage.fill(0);
-            // As widely as the processor writes.
-            Arch::new().dispatch(|| {
-                self.depth.fill(f64::NAN);
-                cast_slice_mut::<Vec3, f32>(self.normals).fill(f32::NAN);
-                cast_slice_mut::<DVec3, f64>(self.points).fill(f64::NAN);
-            });
             self.statuses.fill(Status::Miss);
             self.outcomes.fill(Outcome::Miss);
         }

@@ -1,11 +1,11 @@
 //! Pictures: what was found, pixel by pixel.
 
 use glam::{DVec3, Vec3};
-use iso_grid::{Counters, Outcome};
+use iso_grid::{Counters, Outcome, OutcomeKind};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::{Layer, Size};
+use crate::{Layer, Mosaic, Size};
 
 /// How the search for a pixel's surface ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,13 +22,13 @@ pub enum Status {
     Unfinished,
 }
 
-impl From<&Outcome> for Status {
-    fn from(outcome: &Outcome) -> Self {
-        match outcome {
-            Outcome::Hit(_) => Self::Hit,
-            Outcome::Touch(_) => Self::Touch,
-            Outcome::Miss => Self::Miss,
-            Outcome::Undecided(_) => Self::Undecided,
+impl From<OutcomeKind> for Status {
+    fn from(kind: OutcomeKind) -> Self {
+        match kind {
+            OutcomeKind::Hit => Self::Hit,
+            OutcomeKind::Touch => Self::Touch,
+            OutcomeKind::Miss => Self::Miss,
+            OutcomeKind::Undecided => Self::Undecided,
         }
     }
 }
@@ -50,22 +50,13 @@ pub struct StatusCounts {
 
 impl StatusCounts {
     /// Those of pixels whose searches ended so.
-    pub fn of(outcomes: &[Outcome]) -> Self {
-        /// Of the number that holds all four counts, for which of them goes up cannot be foreseen.
-        const BITS: u32 = 16;
-        let mut counts = Self::default();
-        for few in outcomes.chunks((1 << BITS) - 1) {
-            let packed: u64 = few.iter().map(|outcome| 1 << (BITS * Status::from(outcome) as u32)).sum();
-            let of = |status: Status| packed >> (BITS * status as u32) & ((1 << BITS) - 1);
-            counts += Self {
-                hit: of(Status::Hit),
-                touch: of(Status::Touch),
-                miss: of(Status::Miss),
-                undecided: of(Status::Undecided),
-                unfinished: 0,
-            };
-        }
-        counts
+    pub fn of(kinds: &[OutcomeKind]) -> Self {
+        // As many as bytes can count, which are added up many at once.
+        let few =
+            |wanted, kinds: &[OutcomeKind]| kinds.iter().map(|kind| u8::from(*kind == wanted)).sum::<u8>();
+        let of = |wanted| kinds.chunks(usize::from(u8::MAX)).map(|kinds| u64::from(few(wanted, kinds))).sum();
+        let [hit, touch, undecided] = [OutcomeKind::Hit, OutcomeKind::Touch, OutcomeKind::Undecided].map(of);
+        Self { hit, touch, miss: kinds.len() as u64 - (hit + touch + undecided), undecided, unfinished: 0 }
     }
 }
 
@@ -134,12 +125,12 @@ pub struct Picture {
     /// pixels are covered.
     pub coverage: Layer<u8>,
     /// The distance t along each ray; NaN where nothing was found, −∞ where pixels are unfinished.
-    pub depth: Layer<f64>,
+    pub depth: Mosaic<f64>,
     /// Unit normals towards larger F, each coordinate rounded to single precision, as files hold them, for what takes longest on simple
     /// surfaces is to write them; NaN where nothing was found, zero where pixels are unfinished.
-    pub normals: Layer<Vec3>,
+    pub normals: Mosaic<Vec3>,
     /// Points of the surface; NaN where nothing was found or pixels are unfinished.
-    pub points: Layer<DVec3>,
+    pub points: Mosaic<DVec3>,
     /// The status of each pixel.
     pub statuses: Vec<Status>,
     /// How the search along each ray ended.
@@ -165,9 +156,9 @@ impl Picture {
             size,
             color: Layer::default(),
             coverage: Layer::default(),
-            depth: Layer::default(),
-            normals: Layer::default(),
-            points: Layer::default(),
+            depth: Mosaic::default(),
+            normals: Mosaic::default(),
+            points: Mosaic::default(),
             statuses: Vec::new(),
             outcomes: Vec::new(),
             counts: StatusCounts::default(),
@@ -182,9 +173,9 @@ impl Picture {
         let pixels = |wanted: bool| if wanted { self.size.pixels() } else { 0 };
         self.color.make_room(pixels(layers.color))?;
         self.coverage.make_room(pixels(layers.coverage))?;
-        self.depth.make_room(pixels(layers.depth))?;
-        self.normals.make_room(pixels(layers.normals))?;
-        self.points.make_room(pixels(layers.points))?;
+        self.depth.make_room(layers.depth.then_some(self.size))?;
+        self.normals.make_room(layers.normals.then_some(self.size))?;
+        self.points.make_room(layers.points.then_some(self.size))?;
         make_room(&mut self.statuses, pixels(layers.statuses), Status::Unfinished)?;
         make_room(&mut self.outcomes, pixels(layers.outcomes), Outcome::Miss)
     }
@@ -202,24 +193,19 @@ fn make_room<T: Copy + Send + Sync>(layer: &mut Vec<T>, pixels: usize, value: T)
 
 #[cfg(test)]
 mod tests {
-    use iso_grid::{Hit, Span};
-
     use super::*;
 
-    /// More of one kind than are counted at once.
+    /// More of one kind in a row than a byte counts.
     #[test]
     fn all_pixels_are_counted() {
-        let bracket = Span { start: 1.0, end: 2.0 };
-        let hit = Hit { t: 1.5, bracket };
         let kinds = [
-            (Outcome::Miss, 200_000),
-            (Outcome::Hit(hit), 65_536),
-            (Outcome::Touch(hit), 3),
-            (Outcome::Undecided(bracket), 70_000),
+            (OutcomeKind::Miss, 20_000),
+            (OutcomeKind::Hit, 6_553),
+            (OutcomeKind::Touch, 3),
+            (OutcomeKind::Undecided, 7_000),
         ];
-        let outcomes: Vec<_> = kinds.iter().flat_map(|&(outcome, count)| vec![outcome; count]).collect();
-        let expected =
-            StatusCounts { hit: 65_536, touch: 3, miss: 200_000, undecided: 70_000, unfinished: 0 };
+        let outcomes: Vec<_> = kinds.iter().flat_map(|&(kind, count)| vec![kind; count]).collect();
+        let expected = StatusCounts { hit: 6_553, touch: 3, miss: 20_000, undecided: 7_000, unfinished: 0 };
         assert_eq!(StatusCounts::of(&outcomes), expected);
         assert_eq!(StatusCounts::of(&[]), StatusCounts::default());
     }

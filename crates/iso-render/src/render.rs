@@ -1,17 +1,19 @@
 //! Rendering: tiles of pixels on all cores.
 
+use std::iter::repeat;
 use std::sync::Mutex;
 use std::time::Duration;
 
 use glam::{DVec3, Vec3};
 use iso_expr::CompileError;
-use iso_grid::{Counters, Outcome, Surface, Tracer, Workspace};
+use iso_grid::{Counters, OutcomeKind, Outcomes, Surface, Tracer, Workspace};
 use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::bands::Band;
 use crate::clock::Stopwatch;
 use crate::color::srgb_from_color;
+use crate::mosaic::{Area, TILE};
 use crate::{Camera, Pass, Picture, Plan, Shading, Size, Status, StatusCounts};
 
 /// What a picture shows, and how its rays are followed.
@@ -44,9 +46,6 @@ pub enum RenderError {
     Compile(#[from] CompileError),
 }
 
-/// Width and height of a tile: small enough to balance cores, large enough to fill batches.
-const TILE: u32 = 64;
-
 /// Why what threads share is always whole.
 const UNHARMED: &str = "no thread panics while it holds a lock";
 
@@ -78,11 +77,11 @@ pub fn render_over(
     let watch = Stopwatch::start();
     let (size, layers) = (picture.size, scene.plan.layers());
     picture.make_room(layers).ok_or(RenderError::OutOfMemory(size))?;
-    let bands = Band::all(picture, TILE);
+    let bands = Band::all(picture);
     let work = Mutex::new(Work::default());
     let idle = Mutex::new(Vec::<Tile>::new());
     // One by one, so that at the end no thread is left with many.
-    tiles(size).into_par_iter().with_max_len(1).try_for_each(|area| {
+    Area::tiles(size).into_par_iter().with_max_len(1).try_for_each(|area| {
         let mut tile = idle.lock().expect(UNHARMED).pop().unwrap_or_default();
         tile.render(scene, size, area)?;
         let band = &bands[(area.row / TILE) as usize];
@@ -99,29 +98,6 @@ pub fn render_over(
     let work = work.into_inner().expect(UNHARMED);
     work.note(picture, watch.elapsed());
     Ok(())
-}
-
-/// A rectangle of pixels.
-#[derive(Clone, Copy, Default)]
-struct Area {
-    column: u32,
-    row: u32,
-    width: u32,
-    height: u32,
-}
-
-fn tiles(size: Size) -> Vec<Area> {
-    let starts = |length: u32| (0..length).step_by(TILE as usize);
-    starts(size.height())
-        .flat_map(|row| {
-            starts(size.width()).map(move |column| Area {
-                column,
-                row,
-                width: TILE.min(size.width() - column),
-                height: TILE.min(size.height() - row),
-            })
-        })
-        .collect()
 }
 
 /// What is known of a tile's pixels.
@@ -143,7 +119,7 @@ struct Tile {
     workspace: Workspace,
     area: Area,
     content: Content,
-    outcomes: Vec<Outcome>,
+    outcomes: Outcomes,
     /// Empty when there is no need of them.
     color: Vec<[u8; 3]>,
     normals: Vec<DVec3>,
@@ -155,7 +131,7 @@ struct Tile {
 impl Tile {
     /// Finds out about its pixels, unless work is stopped before that is done.
     fn render(&mut self, scene: &Scene<'_>, size: Size, area: Area) -> Result<(), RenderError> {
-        // Where nothing was found before, all are misses and without normals still.
+        // Where nothing was found before, all are without normals still.
         let is_clear = self.content == Content::Nothing;
         (self.area, self.content) = (area, Content::Unfinished);
         let stop = scene.surface.stop();
@@ -168,10 +144,8 @@ impl Tile {
         workspace.counters = Counters::default();
         let are_normals_wanted = scene.plan.runs(Pass::Normals);
         if !is_clear {
-            outcomes.clear();
             normals.clear();
         }
-        outcomes.resize(rays.len(), Outcome::Miss);
         normals.resize(if are_normals_wanted { rays.len() } else { 0 }, DVec3::NAN);
         let on_the_way = are_normals_wanted.then_some(&mut normals[..]);
         let is_met = scene.tracer.trace_tile(workspace, rays, outcomes, on_the_way);
@@ -180,7 +154,7 @@ impl Tile {
         }
         self.trace = watch.lap();
         (self.content, self.counts) = match is_met {
-            true => (Content::Found, StatusCounts::of(outcomes)),
+            true => (Content::Found, StatusCounts::of(outcomes.kinds())),
             false => (Content::Nothing, StatusCounts { miss: rays.len() as u64, ..StatusCounts::default() }),
         };
         if are_normals_wanted && is_met {
@@ -204,15 +178,15 @@ impl Tile {
     fn shade(&mut self, shading: &Shading, rays: iso_grid::Tile<'_>, size: Size) {
         self.color.clear();
         let width = rays.width();
-        for (line, outcomes) in self.outcomes.chunks_exact(width).enumerate() {
+        for (line, kinds) in self.outcomes.kinds().chunks_exact(width).enumerate() {
             let background = shading.background(self.area.row + line as u32, size);
             let nothing = srgb_from_color(background);
-            let normals = self.normals.get(line * width..).unwrap_or_default();
-            self.color.extend(outcomes.iter().enumerate().map(|(column, outcome)| match outcome {
-                Outcome::Miss => nothing,
+            self.color.extend(kinds.iter().enumerate().map(|(column, kind)| match kind {
+                OutcomeKind::Miss => nothing,
                 _ => {
-                    let view = rays.ray(column, line).direction;
-                    srgb_from_color(shading.color(outcome, normals[column], view, background))
+                    let (place, view) = (line * width + column, rays.ray(column, line).direction);
+                    let outcome = self.outcomes.get(place);
+                    srgb_from_color(shading.color(&outcome, self.normals[place], view, background))
                 }
             }));
         }
@@ -227,30 +201,31 @@ impl Tile {
         if self.content == Content::Unfinished {
             self.fill_layer(Picture::UNFINISHED, band.color, size);
             self.fill_layer(u8::MAX, band.coverage, size);
-            self.fill_layer(f64::NEG_INFINITY, band.depth, size);
-            self.fill_layer(Vec3::ZERO, band.normals, size);
             self.fill_layer(Status::Unfinished, band.statuses, size);
+            band.depth.put(*area, repeat(f64::NEG_INFINITY));
+            band.normals.put(*area, repeat(Vec3::ZERO));
+            band.points.clear(*area);
             return;
         }
         self.put_layer(band.color, size, color.iter().copied());
-        if self.content == Content::Found {
-            let point = |(place, outcome)| {
-                let (column, row) = (place as u32 % area.width, place as u32 / area.width);
-                let at = |t| camera.ray(area.column + column, area.row + row).at(t);
-                found(outcome).map_or(DVec3::NAN, at)
-            };
-            let coverage = |outcome| if Status::from(outcome) == Status::Miss { 0 } else { u8::MAX };
-            self.put_layer(band.coverage, size, outcomes.iter().map(coverage));
-            self.put_layer(
-                band.depth,
-                size,
-                outcomes.iter().map(|outcome| found(outcome).unwrap_or(f64::NAN)),
-            );
-            self.put_layer(band.normals, size, normals.iter().map(|normal| normal.as_vec3()));
-            self.put_layer(band.points, size, outcomes.iter().enumerate().map(point));
-            self.put_layer(band.statuses, size, outcomes.iter().map(Status::from));
-            self.put_layer(band.outcomes, size, outcomes.iter().copied());
+        if self.content == Content::Nothing {
+            band.depth.clear(*area);
+            band.normals.clear(*area);
+            band.points.clear(*area);
+            return;
         }
+        let kinds = outcomes.kinds().iter();
+        let coverage = |kind: &OutcomeKind| if *kind == OutcomeKind::Miss { 0 } else { u8::MAX };
+        let point = |(place, t): (usize, &f64)| {
+            let (column, row) = (place as u32 % area.width, place as u32 / area.width);
+            camera.ray(area.column + column, area.row + row).at(*t)
+        };
+        self.put_layer(band.coverage, size, kinds.clone().map(coverage));
+        self.put_layer(band.statuses, size, kinds.map(|kind| Status::from(*kind)));
+        self.put_layer(band.outcomes, size, outcomes.iter());
+        band.depth.put(*area, outcomes.distances().iter().copied());
+        band.normals.put(*area, normals.iter().map(|normal| normal.as_vec3()));
+        band.points.put(*area, outcomes.distances().iter().enumerate().map(point));
     }
 
     /// Puts what is known of each of the tile's pixels into one layer, if the picture keeps it.
@@ -270,14 +245,6 @@ impl Tile {
         let (column, width) = (self.area.column as usize, self.area.width as usize);
         let rows = layer.chunks_exact_mut(size.width() as usize).take(self.area.height as usize);
         rows.map(move |row| &mut row[column..][..width])
-    }
-}
-
-/// Where on its ray something was found; `None` where nothing was.
-fn found(outcome: &Outcome) -> Option<f64> {
-    match outcome {
-        Outcome::Hit(hit) | Outcome::Touch(hit) => Some(hit.t),
-        Outcome::Miss | Outcome::Undecided(_) => None,
     }
 }
 

@@ -68,6 +68,11 @@ impl Size {
     pub const fn offset(self, column: u32, row: u32) -> usize {
         row as usize * self.width as usize + column as usize
     }
+
+    /// The column and the row of the pixel in this place of such a buffer.
+    pub const fn place(self, offset: usize) -> (u32, u32) {
+        ((offset % self.width as usize) as u32, (offset / self.width as usize) as u32)
+    }
 }
 
 #[cfg(test)]
@@ -79,5 +84,13 @@ mod tests {
         assert_eq!(Size::new(0, 3), Err(SizeError::Empty { width: 0, height: 3 }));
         assert!(matches!(Size::new(u32::MAX, u32::MAX), Err(SizeError::TooLarge { .. })));
         assert_eq!(Size::new(32768, 32768).map(Size::pixels), Ok(1 << 30));
+    }
+
+    #[test]
+    fn pixels_lie_row_by_row() {
+        let size = Size::new(3, 2).unwrap();
+        let places: Vec<_> = (0..6).map(|offset| size.place(offset)).collect();
+        assert_eq!(places, [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)]);
+        assert!(places.into_iter().map(|(column, row)| size.offset(column, row)).eq(0..6));
     }
 }

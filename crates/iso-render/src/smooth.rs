@@ -1,7 +1,7 @@
 //! Smooth edges: pictures drawn larger and averaged.
 
 use crate::color::{Color, color_from_srgb, srgb_from_color};
-use crate::{Layer, Picture, Size, SizeError};
+use crate::{Layer, Mosaic, Picture, Size, SizeError};
 
 /// How many pixels, across and down, are drawn for each pixel of the finished picture.
 ///
@@ -53,9 +53,9 @@ impl Smoothing {
             (color.into(), coverage.into())
         };
         (picture.size, picture.color, picture.coverage) = (size, color, coverage);
-        picture.depth = Layer::default();
-        picture.normals = Layer::default();
-        picture.points = Layer::default();
+        picture.depth = Mosaic::default();
+        picture.normals = Mosaic::default();
+        picture.points = Mosaic::default();
         picture.statuses.clear();
     }
 

@@ -6,8 +6,8 @@ use glam::{DVec3, Vec3};
 use iso_expr::{Ast, Axis, Interpreter, Program};
 use iso_grid::{Certified, GridSettings, Kernel, Method, Region, RootFinding, Surface};
 use iso_render::{
-    Buffer, Camera, Given, Layers, Look, Pass, Picture, Plan, Projection, Scene, Shading, Size, Smoothing,
-    View, Wanted, render,
+    Buffer, Camera, Given, Layers, Look, Mosaic, Pass, Picture, Plan, Projection, Scene, Shading, Size,
+    Smoothing, View, Wanted, render,
 };
 
 const PAPER: &str = "(x^2+y^2-1)^2 + 4z^2 + 0.5x = 0.2";
@@ -62,11 +62,11 @@ fn folded(plan: &Plan) -> Vec<Given> {
     plan.constants().iter().filter(|given| given.taken).map(|given| given.subject).collect()
 }
 
-fn bits(points: &[DVec3]) -> Vec<[u64; 3]> {
+fn bits(points: &Mosaic<DVec3>) -> Vec<[u64; 3]> {
     points.iter().map(|point| point.to_array().map(f64::to_bits)).collect()
 }
 
-fn bits_of_normals(normals: &[Vec3]) -> Vec<[u32; 3]> {
+fn bits_of_normals(normals: &Mosaic<Vec3>) -> Vec<[u32; 3]> {
     normals.iter().map(|normal| normal.to_array().map(f32::to_bits)).collect()
 }
 
@@ -123,13 +123,14 @@ fn layers_left_out_are_not_computed_and_change_no_other() {
             let full = |wanted: bool| if wanted { all.size.pixels() } else { 0 };
             assert_eq!(*picture.color, all.color[..full(layers.color)], "{method:?} {layers:?}");
             assert_eq!(*picture.coverage, all.coverage[..full(layers.coverage)]);
-            let depths = |depths: &[f64]| depths.iter().map(|t| t.to_bits()).collect::<Vec<_>>();
-            assert_eq!(depths(&picture.depth), depths(&all.depth[..full(layers.depth)]));
+            let bits_of_depths =
+                |depths: &Mosaic<f64>| depths.iter().map(|t| t.to_bits()).collect::<Vec<_>>();
+            assert_eq!(bits_of_depths(&picture.depth), bits_of_depths(&all.depth)[..full(layers.depth)]);
             assert_eq!(
                 bits_of_normals(&picture.normals),
-                bits_of_normals(&all.normals[..full(layers.normals)])
+                bits_of_normals(&all.normals)[..full(layers.normals)]
             );
-            assert_eq!(bits(&picture.points), bits(&all.points[..full(layers.points)]));
+            assert_eq!(bits(&picture.points), bits(&all.points)[..full(layers.points)]);
             assert_eq!(picture.statuses, all.statuses[..full(layers.statuses)]);
             assert_eq!(picture.outcomes, all.outcomes[..full(layers.outcomes)]);
             assert_eq!(picture.counts, all.counts);

@@ -6,8 +6,8 @@ use glam::{DVec3, Vec3};
 use iso_expr::{Axis, Interpreter, NodeId, Operation, Program};
 use iso_grid::{Certified, Method, Region, Stop, Surface};
 use iso_render::{
-    Camera, Layers, Look, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, Status, StatusCounts,
-    View, Wanted, render_over,
+    Camera, Layers, Look, Mosaic, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, Status,
+    StatusCounts, View, Wanted, render_over,
 };
 
 /// x² + y² + z² − 1
@@ -83,16 +83,16 @@ fn depths_normals_points_and_statuses_are_those_of_the_sphere() {
             let height_squared = 1.0 - x * x - z * z;
             if height_squared < 0.0 {
                 assert_eq!(picture.statuses[pixel], Status::Miss);
-                assert!(picture.depth[pixel].is_nan() && picture.normals[pixel].is_nan());
+                assert!(picture.depth.get(pixel).is_nan() && picture.normals.get(pixel).is_nan());
                 continue;
             }
             hits += 1;
             let point = DVec3::new(x, -height_squared.sqrt(), z);
             assert_eq!(picture.statuses[pixel], Status::Hit);
-            assert!((picture.depth[pixel] - (5.0 + point.y)).abs() < 1e-11);
-            assert!(picture.points[pixel].distance(point) < 1e-11);
+            assert!((picture.depth.get(pixel) - (5.0 + point.y)).abs() < 1e-11);
+            assert!(picture.points.get(pixel).distance(point) < 1e-11);
             // Rounded to single precision.
-            assert!(picture.normals[pixel].as_dvec3().distance(point) < 6e-8);
+            assert!(picture.normals.get(pixel).as_dvec3().distance(point) < 6e-8);
         }
     }
     assert!(hits > 1000);
@@ -134,12 +134,14 @@ fn nothing_is_left_of_a_picture_that_is_drawn_over() {
         assert_eq!((found.counts, found.counters), (expected.counts, expected.counters));
         assert_eq!((found.color, found.statuses), (expected.color, expected.statuses));
         assert_eq!(found.outcomes, expected.outcomes);
-        let bits = |layer: &[f64]| layer.iter().map(|t| t.to_bits()).collect::<Vec<_>>();
+        let bits = |depths: &Mosaic<f64>| depths.iter().map(f64::to_bits).collect::<Vec<_>>();
         assert_eq!(bits(&found.depth), bits(&expected.depth));
-        let points = |layer: &[DVec3]| layer.iter().flat_map(|point| point.to_array()).collect::<Vec<_>>();
-        assert_eq!(bits(&points(&found.points)), bits(&points(&expected.points)));
-        let normals = |layer: &[Vec3]| {
-            layer.iter().map(|normal| normal.to_array().map(f32::to_bits)).collect::<Vec<_>>()
+        let points = |points: &Mosaic<DVec3>| {
+            points.iter().map(|point| point.to_array().map(f64::to_bits)).collect::<Vec<_>>()
+        };
+        assert_eq!(points(&found.points), points(&expected.points));
+        let normals = |normals: &Mosaic<Vec3>| {
+            normals.iter().map(|normal| normal.to_array().map(f32::to_bits)).collect::<Vec<_>>()
         };
         assert_eq!(normals(&found.normals), normals(&expected.normals));
     }
@@ -151,7 +153,8 @@ fn pixels_in_which_nothing_is_found_are_the_same_everywhere() {
     let size = Size::new(320, 130).unwrap();
     let picture = picture(size, 1);
     let bits = |pixel: usize| {
-        let (depth, point, normal) = (picture.depth[pixel], picture.points[pixel], picture.normals[pixel]);
+        let (depth, point, normal) =
+            (picture.depth.get(pixel), picture.points.get(pixel), picture.normals.get(pixel));
         (depth.to_bits(), point.to_array().map(f64::to_bits), normal.to_array().map(f32::to_bits))
     };
     let [far, near] = [size.offset(0, 0), size.offset(130, 2)];
@@ -161,7 +164,11 @@ fn pixels_in_which_nothing_is_found_are_the_same_everywhere() {
     };
     assert!(!is_met(0) && is_met(128), "a tile without a hit, and one with hits");
     assert!([far, near].iter().all(|pixel| picture.statuses[*pixel] == Status::Miss));
-    assert!(picture.depth[far].is_nan() && picture.points[far].is_nan() && picture.normals[far].is_nan());
+    assert!(
+        picture.depth.get(far).is_nan()
+            && picture.points.get(far).is_nan()
+            && picture.normals.get(far).is_nan()
+    );
     let mut misses = (0..size.pixels()).filter(|pixel| picture.statuses[*pixel] == Status::Miss);
     assert!(misses.all(|pixel| bits(pixel) == bits(far)));
 }
@@ -185,11 +192,11 @@ fn unfinished_pixels_are_marked_in_every_layer_and_finished_ones_are_as_ever() {
     for pixel in 0..size.pixels() {
         if part.statuses[pixel] == Status::Unfinished {
             assert_eq!(part.color[pixel], Picture::UNFINISHED);
-            assert_eq!((part.depth[pixel], part.normals[pixel]), (f64::NEG_INFINITY, Vec3::ZERO));
-            assert!(part.points[pixel].is_nan());
+            assert_eq!((part.depth.get(pixel), part.normals.get(pixel)), (f64::NEG_INFINITY, Vec3::ZERO));
+            assert!(part.points.get(pixel).is_nan());
         } else {
             assert_eq!(part.statuses[pixel], whole.statuses[pixel]);
-            assert_eq!(part.depth[pixel].to_bits(), whole.depth[pixel].to_bits());
+            assert_eq!(part.depth.get(pixel).to_bits(), whole.depth.get(pixel).to_bits());
             assert_eq!(part.color[pixel], whole.color[pixel]);
             assert_ne!(part.color[pixel], Picture::UNFINISHED);
         }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use iso_expr::CompileError;
-use iso_grid::{Outcome, Ray, Surface, Tracer, Workspace, normals};
+use iso_grid::{Outcome, OutcomeKind, Outcomes, Ray, Surface, Tracer, Workspace, normals};
 use iso_render::Status;
 use rayon::prelude::*;
 
@@ -93,14 +93,14 @@ fn follow(surface: &Surface, tracer: &dyn Tracer, rays: &[Ray]) -> Result<Vec<Op
             if surface.stop().is_requested() {
                 return Ok(());
             }
-            let mut outcomes = vec![Outcome::Miss; rays.len()];
+            let mut outcomes = Outcomes::default();
             let mut found_normals = vec![DVec3::NAN; rays.len()];
             tracer.trace(workspace, rays, &mut outcomes);
             if surface.stop().is_requested() {
                 return Ok(());
             }
             normals(surface, None, workspace, rays.into(), &outcomes, &mut found_normals)?;
-            for ((place, outcome), normal) in followed.iter_mut().zip(outcomes).zip(found_normals) {
+            for ((place, outcome), normal) in followed.iter_mut().zip(outcomes.iter()).zip(found_normals) {
                 *place = Some((outcome, normal));
             }
             Ok(())
@@ -115,7 +115,7 @@ const COLUMNS: [&str; 10] = ["status", "t", "t_lo", "t_hi", "x", "y", "z", "nx",
 /// What became of a ray, column by column.
 fn fields(ray: &Ray, end: Option<&End>) -> impl Iterator<Item = String> {
     let (status, numbers) = match end {
-        Some((outcome, normal)) => (Status::from(outcome), numbers(ray, outcome, normal)),
+        Some((outcome, normal)) => (Status::from(OutcomeKind::from(*outcome)), numbers(ray, outcome, normal)),
         None => (Status::Unfinished, [f64::NAN; COLUMNS.len() - 1]),
     };
     iter::once(status_name(status).to_owned()).chain(numbers.map(digits))

@@ -23,8 +23,9 @@ pub(crate) fn verdicts(
         .collect();
     let surface = Surface::new(engine(EngineName::Jit)?, subject.program.clone());
     let mut workspace = Workspace::default();
-    let mut answers =
-        |picture: &Picture| Answers::new(&surface, &mut workspace, &rays, picture.outcomes.clone());
+    let mut answers = |picture: &Picture| {
+        Answers::new(&surface, &mut workspace, &rays, picture.outcomes.iter().copied().collect())
+    };
     Ok(compare(&surface, &rays, &answers(proven)?, &answers(picture)?)?)
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use iso_expr::Engine;
-use iso_grid::{Counters, Method, Outcome, Ray, Tracer, Workspace};
+use iso_grid::{Counters, Method, Outcomes, Ray, Tracer, Workspace};
 use iso_render::{Layers, Picture};
 use serde::Serialize;
 
@@ -216,7 +216,7 @@ fn run(setting: &Setting, measured: &Measured) -> Option<Run> {
 struct Alone(Box<dyn Tracer>);
 
 impl Tracer for Alone {
-    fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]) {
+    fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut Outcomes) {
         self.0.trace(workspace, rays, outcomes);
     }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use iso_expr::{Engine, Interpreter};
 use iso_grid::{
-    Certified, GridSettings, Method, Outcome, Ray, RootFinding, Surface, Tile, Tracer, Workspace,
+    Certified, GridSettings, Method, Outcomes, Ray, RootFinding, Surface, Tile, Tracer, Workspace,
 };
 use iso_render::{Camera, Projection, Size, StatusCounts, View};
 use serde::Serialize;
@@ -143,7 +143,7 @@ fn truths(case: &Case, rays: &[Ray], size: Size) -> Result<Vec<Truth>, Failure> 
             let value = program(formula).expect("the formulas of the suite are in the language");
             let surface = Surface::new(Arc::new(Interpreter), value.simplified());
             let tracer = Certified::new(&surface, *region)?;
-            trace(&tracer, rays, size).iter().map(Truth::of_proven).collect()
+            trace(&tracer, rays, size).iter().map(|outcome| Truth::of_proven(&outcome)).collect()
         }
         Stated::Filled => rays.iter().map(|ray| Truth::of_filled(region, ray)).collect(),
         Stated::AlongRays => vec![Truth::Unknown; rays.len()],
@@ -151,8 +151,8 @@ fn truths(case: &Case, rays: &[Ray], size: Size) -> Result<Vec<Truth>, Failure> 
 }
 
 /// Traces a picture as one tile.
-fn trace(tracer: &dyn Tracer, rays: &[Ray], size: Size) -> Vec<Outcome> {
-    let mut outcomes = vec![Outcome::Miss; rays.len()];
+fn trace(tracer: &dyn Tracer, rays: &[Ray], size: Size) -> Outcomes {
+    let mut outcomes = Outcomes::default();
     tracer.trace_tile(
         &mut Workspace::default(),
         Tile::listed(rays, size.width() as usize),
@@ -222,9 +222,9 @@ impl Measured {
     }
 
     /// Holds the picture's certified outcomes against the truth.
-    fn judge(&mut self, truths: &[Truth], outcomes: &[Outcome], may_be_open: bool, way: &str) {
-        for (pixel, (truth, outcome)) in truths.iter().zip(outcomes).enumerate() {
-            let judgement = truth.judge(outcome, may_be_open);
+    fn judge(&mut self, truths: &[Truth], outcomes: &Outcomes, may_be_open: bool, way: &str) {
+        for (pixel, (truth, outcome)) in truths.iter().zip(outcomes.iter()).enumerate() {
+            let judgement = truth.judge(&outcome, may_be_open);
             self.count(judgement, || format!("{way}, pixel {pixel}: {truth:?} ends as {outcome:?}"));
         }
     }
@@ -232,13 +232,12 @@ impl Measured {
     /// The same for each ray by itself, and for the stated ones.
     fn judge_alone(&mut self, case: &Case, tracer: &dyn Tracer, truths: &[Truth]) {
         let may_be_open = case.open.is_some();
-        let mut outcomes = vec![Outcome::Miss; self.view.rays.len()];
+        let mut outcomes = Outcomes::default();
         tracer.trace(&mut Workspace::default(), &self.view.rays, &mut outcomes);
         self.judge(truths, &outcomes, may_be_open, "each ray alone");
         for stated in &case.rays {
-            let mut outcome = [Outcome::Miss];
-            tracer.trace(&mut Workspace::default(), &[stated.ray()], &mut outcome);
-            let [outcome] = outcome;
+            tracer.trace(&mut Workspace::default(), &[stated.ray()], &mut outcomes);
+            let outcome = outcomes.get(0);
             let judgement = Truth::of_stated(stated).judge(&outcome, may_be_open);
             self.count(judgement, || format!("{stated:?} ends as {outcome:?}"));
         }
@@ -285,7 +284,7 @@ impl Run {
         verdicts: &[Verdict],
         milliseconds: f64,
     ) -> Self {
-        let ends = StatusCounts::of(&answers.outcomes);
+        let ends = StatusCounts::of(answers.outcomes.kinds());
         let mut run = Self {
             engine,
             method,

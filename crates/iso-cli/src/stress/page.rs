@@ -74,7 +74,7 @@ fn thumbnail(view: &Seen, answers: &Answers, verdicts: &[Verdict]) -> Result<Str
             let (row, toward) = (pixel / view.size.width() as usize, view.rays[pixel].direction);
             let normal = answers.normals[pixel];
             let background = shading.background(row as u32, view.size);
-            srgb_from_color(shading.color(&answers.outcomes[pixel], normal, toward, background))
+            srgb_from_color(shading.color(&answers.outcomes.get(pixel), normal, toward, background))
         }
     };
     image_address(view.size, (0..view.rays.len()).map(color).collect())

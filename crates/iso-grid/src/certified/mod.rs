@@ -21,7 +21,7 @@ use glam::DVec3;
 use iso_expr::{BatchKernel, CompileError};
 
 use crate::tracer::trace_each;
-use crate::{Counters, Outcome, Ray, Region, Span, Stop, Surface, Tile, Tracer, Workspace};
+use crate::{Counters, Outcome, Outcomes, Ray, Region, Span, Stop, Surface, Tile, Tracer, Workspace};
 pub(crate) use beams::Memory;
 use beams::Subdivision;
 use cells::Cell;
@@ -158,16 +158,14 @@ impl Certified {
 }
 
 impl Tracer for Certified {
-    fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]) {
-        assert_eq!(rays.len(), outcomes.len());
-        for (ray, outcome) in rays.iter().zip(outcomes) {
+    fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut Outcomes) {
+        outcomes.reset(rays.len());
+        for (number, ray) in rays.iter().enumerate() {
             workspace.counters.rays += 1;
-            let Some(clip) = Clip::new(&self.region, ray) else {
-                *outcome = Outcome::Miss;
-                continue;
-            };
+            let Some(clip) = Clip::new(&self.region, ray) else { continue };
             workspace.counters.rays_in_region += 1;
-            *outcome = self.search(workspace, *ray, clip, (Cell::REGION, clip.outer), &self.kernels);
+            let outcome = self.search(workspace, *ray, clip, (Cell::REGION, clip.outer), &self.kernels);
+            outcomes.set(number, outcome);
         }
     }
 
@@ -175,11 +173,9 @@ impl Tracer for Certified {
         &self,
         workspace: &mut Workspace,
         tile: Tile<'_>,
-        outcomes: &mut [Outcome],
+        outcomes: &mut Outcomes,
         normals: Option<&mut [DVec3]>,
     ) -> bool {
-        assert_eq!(tile.len(), outcomes.len());
-        debug_assert!(outcomes.iter().all(|outcome| *outcome == Outcome::Miss));
         assert!(normals.as_ref().is_none_or(|normals| normals.len() == tile.len()));
         match Subdivision::new(self, workspace, tile, (outcomes, normals)) {
             Some(subdivision) => subdivision.run(),

@@ -4,7 +4,7 @@ use crate::paper::lockstep::Lockstep;
 use crate::paper::roots::RootFinding;
 use crate::paper::settings::check_step;
 use crate::paper::stretch::{Spacing, Stretch, Stretches};
-use crate::{Counters, GridError, Outcome, Ray, Region, Surface, Tracer, Workspace};
+use crate::{Counters, GridError, Outcomes, Ray, Region, Surface, Tracer, Workspace};
 
 /// Samples each ray through the whole region and narrows down the first change of sign: the paper's N = 0.
 ///
@@ -12,8 +12,8 @@ use crate::{Counters, GridError, Outcome, Ray, Region, Surface, Tracer, Workspac
 /// [`Direct::CELLS`] cells along the region's longest side: at the default step of 1/20, no more than 1/600 of that side.
 ///
 /// It misses pairs of roots between neighbouring samples, roots where F − C does not change sign, and takes poles that
-/// change sign for roots. A sample that is exactly zero is a root: a [`Outcome::Hit`] when the signs before and behind it
-/// differ, otherwise a [`Outcome::Touch`].
+/// change sign for roots. A sample that is exactly zero is a root: a [`Outcomes::Hit`] when the signs before and behind it
+/// differ, otherwise a [`Outcomes::Touch`].
 pub struct Direct {
     lockstep: Lockstep,
     spacing: Spacing,
@@ -38,7 +38,7 @@ impl Direct {
 }
 
 impl Tracer for Direct {
-    fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]) {
+    fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut Outcomes) {
         self.lockstep.trace(workspace, rays, outcomes, |ray, span| {
             Whole(Some(self.spacing.stretch(ray.direction, span)))
         });

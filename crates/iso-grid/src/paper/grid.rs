@@ -7,7 +7,7 @@ use crate::paper::lattice::Lattice;
 use crate::paper::lockstep::Lockstep;
 use crate::paper::stretch::{Spacing, Stretch, Stretches};
 use crate::paper::walk::CellWalk;
-use crate::{Counters, GridError, GridSettings, Kernel, Outcome, Ray, Region, Surface, Tracer, Workspace};
+use crate::{Counters, GridError, GridSettings, Kernel, Outcomes, Ray, Region, Surface, Tracer, Workspace};
 
 /// The paper's method: a grid that knows which of its cells hold the surface.
 ///
@@ -20,7 +20,7 @@ use crate::{Counters, GridError, GridSettings, Kernel, Outcome, Ray, Region, Sur
 /// finder gives the point: in the paper bisection, down to neighbouring doubles. Samples are joined across faces between existence cells.
 ///
 /// Zero has both signs, so a surface through grid points is found, and so is a sample that happens to be zero: a
-/// [`Outcome::Hit`] when the signs before and behind it differ, otherwise a [`Outcome::Touch`]. NaN and infinite values
+/// [`Outcomes::Hit`] when the signs before and behind it differ, otherwise a [`Outcome::Touch`]. NaN and infinite values
 /// have no sign.
 ///
 /// It misses what is smaller than a cell and far from what it found, pairs of roots between neighbouring samples, roots
@@ -64,7 +64,7 @@ impl Grid {
 }
 
 impl Tracer for Grid {
-    fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]) {
+    fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut Outcomes) {
         self.lockstep.trace(workspace, rays, outcomes, |ray, span| ExistenceStretches {
             grid: self,
             walk: CellWalk::new(&self.lattice, *ray, span),

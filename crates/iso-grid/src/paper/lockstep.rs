@@ -7,7 +7,7 @@ use iso_expr::BatchKernel;
 use crate::paper::roots::{RootFinder, RootFinding};
 use crate::paper::search::Search;
 use crate::paper::stretch::Stretches;
-use crate::{GridError, Kernel, Outcome, Ray, Region, Span, Stop, Surface, Workspace};
+use crate::{GridError, Kernel, Outcomes, Ray, Region, Span, Stop, Surface, Workspace};
 
 /// Searches under way at once: enough to fill a kernel's batch, few enough to stay in the nearest cache.
 const LANES: usize = 64;
@@ -50,12 +50,11 @@ impl Lockstep {
         &self,
         workspace: &mut Workspace,
         rays: &[Ray],
-        outcomes: &mut [Outcome],
+        outcomes: &mut Outcomes,
         stretches: impl Fn(&Ray, Span) -> S,
     ) {
-        assert_eq!(rays.len(), outcomes.len(), "each ray has an outcome");
         workspace.counters.rays += rays.len() as u64;
-        outcomes.fill(Outcome::Miss);
+        outcomes.reset(rays.len());
         let mut waiting = rays.iter().enumerate().filter_map(|(place, ray)| {
             let span = self.region.clip(ray)?;
             Some((place, Search::new(*ray, self.roots, stretches(ray, span))))
@@ -78,7 +77,7 @@ impl Lockstep {
         &self,
         workspace: &mut Workspace,
         lanes: &mut Vec<Lane<S>>,
-        outcomes: &mut [Outcome],
+        outcomes: &mut Outcomes,
     ) {
         let Workspace { scratch, counters, points, sloped_points, .. } = workspace;
         points.clear();
@@ -110,7 +109,7 @@ impl Lockstep {
                 lane.search.answer(answers, f64::NAN)
             };
             if let Some(outcome) = outcome {
-                outcomes[lane.place] = outcome;
+                outcomes.set(lane.place, outcome);
                 counters.steps += lane.search.steps();
             }
             outcome.is_none()

@@ -11,8 +11,8 @@ use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::random::Random;
 use iso_expr::{Decorated, Decoration, Engine, Interpreter, Interval, Program, Scratch};
 use iso_grid::{
-    Certified, Direct, Grid, GridError, GridSettings, Octree, Outcome, Ray, Region, RootFinder, RootFinding,
-    Span, Stop, Surface, Tile, Tracer, Workspace,
+    Certified, Direct, Grid, GridError, GridSettings, Octree, Outcome, Outcomes, Ray, Region, RootFinder,
+    RootFinding, Span, Stop, Surface, Tile, Tracer, Workspace,
 };
 
 /// How many columns and rows the tile that is traced may have.
@@ -63,18 +63,18 @@ fn trace_by_two(random: &mut Random, program: &Program, stop: &Stop) -> Result<(
     outcomes(sampling.as_ref(), &rays).iter().for_each(check_places);
     let certified = Certified::new(&surface, region)?;
     let alone = outcomes(&certified, &rays);
-    let mut together = vec![Outcome::Miss; rays.len()];
+    let mut together = Outcomes::default();
     certified.trace_tile(&mut Workspace::default(), Tile::listed(&rays, side), &mut together, None);
     if stop.is_requested() {
         return Err(GridError::Stopped);
     }
-    for ((ray, alone), together) in rays.iter().zip(&alone).zip(&together) {
+    for ((ray, alone), together) in rays.iter().zip(&alone).zip(together.iter()) {
         let context = || format!("{alone:?} alone, {together:?} in a tile, along {ray:?} of\n{program}");
         check_places(alone);
-        check_places(together);
-        assert!(agree(alone, together), "{}", context());
+        check_places(&together);
+        assert!(agree(alone, &together), "{}", context());
         if let Some(before) = first_crossing(program, ray) {
-            for outcome in [alone, together] {
+            for outcome in [alone, &together] {
                 let start = earliest(outcome);
                 assert!(
                     start.is_some_and(|start| start <= before),
@@ -110,9 +110,9 @@ fn tile(random: &mut Random, side: usize) -> Vec<Ray> {
 }
 
 fn outcomes(method: &dyn Tracer, rays: &[Ray]) -> Vec<Outcome> {
-    let mut outcomes = vec![Outcome::Miss; rays.len()];
+    let mut outcomes = Outcomes::default();
     method.trace(&mut Workspace::default(), rays, &mut outcomes);
-    outcomes
+    outcomes.iter().collect()
 }
 
 /// Roots lie in their brackets, and brackets on their rays.

@@ -39,6 +39,7 @@ pub enum EncodeError {
 mod testing {
     use glam::Vec3;
 
+    use crate::mosaic::Area;
     use crate::{Layers, Picture, Size};
 
     /// Six pixels, of which one shows something.
@@ -47,9 +48,12 @@ mod testing {
         let mut picture = Picture::empty(Size::new(3, 2).unwrap());
         picture.make_room(all).unwrap();
         picture.color = (0..6).map(|pixel| [pixel, 40 * pixel, 255 - pixel]).collect();
-        picture.depth = vec![f64::NAN; 6].into();
-        picture.depth[4] = 1.25;
-        picture.normals[4] = Vec3::new(0.0, -0.6, 0.8);
+        let tile = Area::tiles(picture.size)[0];
+        let is_found = |pixel| pixel == 4;
+        let depth = (0..6).map(|pixel| if is_found(pixel) { 1.25 } else { f64::NAN });
+        let normals = (0..6).map(|pixel| if is_found(pixel) { Vec3::new(0.0, -0.6, 0.8) } else { Vec3::NAN });
+        picture.depth.strips()().put(tile, depth);
+        picture.normals.strips()().put(tile, normals);
         picture
     }
 }

@@ -16,7 +16,7 @@ impl Picture {
     pub fn write_depth(&self, writer: impl Write + Seek) -> Result<(), EncodeError> {
         let channels = SpecificChannels::build()
             .with_channel("Z")
-            .with_pixel_fn(|position: Vec2<usize>| (self.depth[self.pixel(position)] as f32,));
+            .with_pixel_fn(|position: Vec2<usize>| (self.depth.get(self.pixel(position)) as f32,));
         Ok(Image::from_channels(self.dimensions(), channels).write().non_parallel().to_buffered(writer)?)
     }
 
@@ -31,7 +31,7 @@ impl Picture {
             .with_channel("N.Y")
             .with_channel("N.Z")
             .with_pixel_fn(|position: Vec2<usize>| {
-                <(f32, f32, f32)>::from(self.normals[self.pixel(position)])
+                <(f32, f32, f32)>::from(self.normals.get(self.pixel(position)))
             });
         Ok(Image::from_channels(self.dimensions(), channels).write().non_parallel().to_buffered(writer)?)
     }

@@ -112,7 +112,7 @@ mod tests {
     use iso_expr::{Ast, Interpreter};
 
     use super::*;
-    use crate::{Certified, Outcome, Raster, Region, Surface, Tile, Workspace};
+    use crate::{Certified, Outcomes, Raster, Region, Surface, Tile, Workspace};
 
     /// exp(40x) is 1 at 0, but up to e⁸ on a box that is only 0.4 wide.
     #[test]
@@ -124,7 +124,7 @@ mod tests {
         let (right, down) = (0.02 * DVec3::X, 0.02 * DVec3::Y);
         let raster = Raster::Parallel { middle: 4.0 * DVec3::Z, right, down, direction: DVec3::NEG_Z };
         let tile = Tile::of(&raster, [-2.0, -2.0], 4, 4);
-        let (mut workspace, mut outcomes) = (Workspace::default(), vec![Outcome::Miss; tile.len()]);
+        let (mut workspace, mut outcomes) = (Workspace::default(), Outcomes::default());
         let mut subdivision =
             Subdivision::new(&certified, &mut workspace, tile, (&mut outcomes, None)).unwrap();
         let size = 0.05 * DVec3::ONE;

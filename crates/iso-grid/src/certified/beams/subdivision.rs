@@ -25,7 +25,7 @@ use crate::certified::clip::Clip;
 use crate::certified::kernels::{BATCH, Kernels};
 use crate::normals::{Asked, answer};
 use crate::raster::Rays;
-use crate::{Hit, Kernel, Outcome, Span, Tile, Workspace};
+use crate::{Hit, Kernel, Outcome, Outcomes, Span, Tile, Workspace};
 
 /// Into how many stretches a beam is cut at most.
 const SLICES: usize = BATCH;
@@ -106,7 +106,7 @@ pub(in crate::certified) struct Subdivision<'a> {
     pub(super) certified: &'a Certified,
     pub(super) workspace: &'a mut Workspace,
     pub(super) tile: Tile<'a>,
-    pub(super) outcomes: &'a mut [Outcome],
+    pub(super) outcomes: &'a mut Outcomes,
     /// Those of rays that were found on the way, if they are wanted.
     pub(super) normals: Option<&'a mut [DVec3]>,
     pub(super) memory: Memory,
@@ -128,7 +128,7 @@ impl<'a> Subdivision<'a> {
         certified: &'a Certified,
         workspace: &'a mut Workspace,
         tile: Tile<'a>,
-        (outcomes, normals): (&'a mut [Outcome], Option<&'a mut [DVec3]>),
+        (outcomes, normals): (&'a mut Outcomes, Option<&'a mut [DVec3]>),
     ) -> Option<Self> {
         let is_finite = match tile.rays {
             Rays::Raster { .. } => true,
@@ -142,6 +142,7 @@ impl<'a> Subdivision<'a> {
         if !beam.is_proportionate() {
             return None;
         }
+        outcomes.reset(tile.len());
         workspace.counters.rays += tile.len() as u64;
         workspace.counters.rays_in_region += count_in(&certified.region, &tile, area);
         let mut memory = std::mem::take(&mut workspace.tile);
@@ -368,7 +369,7 @@ impl<'a> Subdivision<'a> {
 
     /// Notes how the search along a ray ends.
     pub(super) fn end(&mut self, place: usize, outcome: Outcome) {
-        self.outcomes[place] = outcome;
+        self.outcomes.set(place, outcome);
         self.memory.open[place] = false;
     }
 }

@@ -7,7 +7,7 @@ mod tree;
 use crate::paper::lattice::Lattice;
 use crate::paper::lockstep::Lockstep;
 use crate::paper::stretch::{Spacing, Stretch, Stretches};
-use crate::{Counters, GridError, GridSettings, Kernel, Outcome, Ray, Region, Surface, Tracer, Workspace};
+use crate::{Counters, GridError, GridSettings, Kernel, Outcomes, Ray, Region, Surface, Tracer, Workspace};
 use tree::{Tree, TreeWalk};
 
 /// The paper's closing idea: the sign test of [`Grid`](crate::Grid), made on blocks of cells first.
@@ -54,7 +54,7 @@ impl Octree {
 }
 
 impl Tracer for Octree {
-    fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut [Outcome]) {
+    fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut Outcomes) {
         self.lockstep.trace(workspace, rays, outcomes, |ray, span| LeafStretches {
             walk: TreeWalk::new(&self.tree, &self.lattice, *ray, span),
             spacing: self.spacing,

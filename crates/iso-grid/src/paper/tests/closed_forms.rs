@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use crate::testing::{normal, surface, surface_without_gradient, trace};
 use crate::{
-    Direct, Grid, GridSettings, Hit, Octree, Outcome, Ray, Region, RootFinder, RootFinding, Surface, Tracer,
-    Workspace, normals,
+    Direct, Grid, GridSettings, Hit, Octree, Outcome, Outcomes, Ray, Region, RootFinder, RootFinding,
+    Surface, Tracer, Workspace, normals,
 };
 
 fn cube(half_side: f64) -> Region {
@@ -53,14 +53,14 @@ fn check(surface: &Surface, region: Region, expected: impl Fn(&Ray) -> Option<(f
     let rays = rays();
     for tracer in methods(surface, region, 25) {
         let mut workspace = Workspace::default();
-        let mut outcomes = vec![Outcome::Miss; rays.len()];
+        let mut outcomes = Outcomes::default();
         let mut found = vec![DVec3::NAN; rays.len()];
         tracer.trace(&mut workspace, &rays, &mut outcomes);
         workspace.counters.gradient_evaluations = 0;
         normals(surface, None, &mut workspace, rays.as_slice().into(), &outcomes, &mut found).unwrap();
         let mut hits = 0;
         for (number, ray) in rays.iter().enumerate() {
-            match (expected(ray), outcomes[number]) {
+            match (expected(ray), outcomes.get(number)) {
                 (Some((t, normal)), Outcome::Hit(hit)) => {
                     assert!((hit.t - t).abs() <= 1e-13 * t.max(1.0), "t {} for {t}, ray {number}", hit.t);
                     assert!(found[number].distance(normal) < 1e-12, "{} for {normal}", found[number]);
@@ -159,9 +159,9 @@ fn outcomes_do_not_depend_on_neighbours_in_the_slice() {
     let surface = surface_without_gradient(|p| (9.0 * p.x).sin() + (7.0 * p.y).sin() * p.z);
     for tracer in methods(&surface, cube(1.3), 12) {
         let rays = rays();
-        let mut together = vec![Outcome::Miss; rays.len()];
+        let mut together = Outcomes::default();
         tracer.trace(&mut Workspace::default(), &rays, &mut together);
-        for (ray, outcome) in rays.iter().zip(together) {
+        for (ray, outcome) in rays.iter().zip(together.iter()) {
             assert_eq!(trace(&*tracer, *ray), outcome);
         }
     }
@@ -178,7 +178,7 @@ fn root_finders_agree_and_newton_takes_fewer_evaluations() {
     let traced = |finder, tolerance| {
         let settings =
             GridSettings { roots: RootFinding { finder, tolerance }, ..GridSettings::new([20; 3]) };
-        let mut outcomes = vec![Outcome::Miss; rays.len()];
+        let mut outcomes = Outcomes::default();
         let mut workspace = Workspace::default();
         Grid::new(&surface, cube(1.3), &settings).unwrap().trace(&mut workspace, &rays, &mut outcomes);
         let counters = workspace.counters;
@@ -189,8 +189,8 @@ fn root_finders_agree_and_newton_takes_fewer_evaluations() {
         for finder in [RootFinder::Itp, RootFinder::Newton] {
             let (outcomes, evaluations) = traced(finder, tolerance);
             assert!(evaluations < most, "{finder:?}: {evaluations} of {most}");
-            for (one, other) in bisected.iter().zip(outcomes) {
-                match (*one, other) {
+            for (one, other) in bisected.iter().zip(outcomes.iter()) {
+                match (one, other) {
                     (Outcome::Hit(one), Outcome::Hit(other)) => {
                         let allowed = (2.0 * tolerance).max(1e-14) * one.t;
                         assert!((one.t - other.t).abs() <= allowed, "{finder:?}: {one:?} {other:?}");
