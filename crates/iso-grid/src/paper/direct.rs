@@ -12,8 +12,8 @@ use crate::{Counters, GridError, Outcomes, Ray, Region, Surface, Tracer, Workspa
 /// [`Direct::CELLS`] cells along the region's longest side: at the default step of 1/20, no more than 1/600 of that side.
 ///
 /// It misses pairs of roots between neighbouring samples, roots where F − C does not change sign, and takes poles that
-/// change sign for roots. A sample that is exactly zero is a root: a [`Outcomes::Hit`] when the signs before and behind it
-/// differ, otherwise a [`Outcomes::Touch`].
+/// change sign for roots. A sample that is exactly zero is a root: a [`Outcome::Hit`](crate::Outcome::Hit) when the signs before and behind it
+/// differ, otherwise a [`Outcome::Touch`](crate::Outcome::Touch).
 pub struct Direct {
     lockstep: Lockstep,
     spacing: Spacing,

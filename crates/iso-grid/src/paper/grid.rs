@@ -20,7 +20,7 @@ use crate::{Counters, GridError, GridSettings, Kernel, Outcomes, Ray, Region, Su
 /// finder gives the point: in the paper bisection, down to neighbouring doubles. Samples are joined across faces between existence cells.
 ///
 /// Zero has both signs, so a surface through grid points is found, and so is a sample that happens to be zero: a
-/// [`Outcomes::Hit`] when the signs before and behind it differ, otherwise a [`Outcome::Touch`]. NaN and infinite values
+/// [`Outcome::Hit`](crate::Outcome::Hit) when the signs before and behind it differ, otherwise a [`Outcome::Touch`](crate::Outcome::Touch). NaN and infinite values
 /// have no sign.
 ///
 /// It misses what is smaller than a cell and far from what it found, pairs of roots between neighbouring samples, roots
