@@ -48,13 +48,16 @@ impl<'a> Band<'a> {
         repeat_with(band).take(count as usize).collect()
     }
 
-    /// Says of all pixels that nothing is there, if that was not done before. Colours and what lies tile by tile are left as they are.
+    /// Says of all pixels that nothing is there, if that was not done before. Colours are left as they are.
     ///
     /// Whole rows take a third of the time that their parts take tile by tile.
     pub(crate) fn clear(&mut self) {
         if !self.is_clear {
             self.is_clear = true;
             self.coverage.fill(0);
+            self.depth.clear();
+            self.normals.clear();
+            self.points.clear();
             self.statuses.fill(Status::Miss);
             self.outcomes.fill(Outcome::Miss);
         }

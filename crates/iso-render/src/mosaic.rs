@@ -150,21 +150,16 @@ pub(crate) struct Strip<'a, T> {
 impl<T> Strip<'_, T> {
     /// Puts the pixels of a tile in their place, row by row, if the layer is kept.
     pub(crate) fn put(&mut self, tile: Area, pixels: impl Iterator<Item = T>) {
-        if self.note(tile, true) {
+        if let Some(is_held) = self.are_held.get_mut((tile.column / TILE) as usize) {
+            *is_held = true;
             let places = &mut self.pixels[tile.start()..][..tile.pixels()];
             places.iter_mut().zip(pixels).for_each(|(place, pixel)| *place = pixel);
         }
     }
 
-    /// Notes that nothing was found in a tile.
-    pub(crate) fn clear(&mut self, tile: Area) {
-        self.note(tile, false);
-    }
-
-    /// Says whether the layer is kept.
-    fn note(&mut self, tile: Area, is_held: bool) -> bool {
-        let place = self.are_held.get_mut((tile.column / TILE) as usize);
-        place.map(|place| *place = is_held).is_some()
+    /// Notes that nothing was found in any of its tiles.
+    pub(crate) fn clear(&mut self) {
+        self.are_held.fill(false);
     }
 }
 
@@ -185,14 +180,16 @@ mod tests {
                 mosaic.make_room(Some(size)).unwrap();
                 let mut strips: Vec<_> =
                     repeat_with(mosaic.strips()).take(height.div_ceil(TILE) as usize).collect();
-                for (number, tile) in Area::tiles(size).into_iter().enumerate() {
+                strips.iter_mut().for_each(Strip::clear);
+                let tiles = Area::tiles(size).into_iter().enumerate();
+                for (_, tile) in tiles.filter(|(number, _)| is_held(*number)) {
                     let strip = &mut strips[(tile.row / TILE) as usize];
                     let rows = tile.row..tile.row + tile.height;
                     let pixels = rows.flat_map(|row| {
                         let start = size.offset(tile.column, row);
                         (start..start + tile.width as usize).map(|pixel| pixel as f64)
                     });
-                    if is_held(number) { strip.put(tile, pixels) } else { strip.clear(tile) }
+                    strip.put(tile, pixels);
                 }
                 drop(strips);
                 assert_eq!(mosaic.len(), size.pixels());
@@ -216,7 +213,7 @@ mod tests {
         let tile = Area::tiles(size)[1];
         let mut strip = mosaic.strips()();
         strip.put(tile, repeat(1.0));
-        strip.clear(tile);
+        strip.clear();
         assert!(mosaic.is_empty());
         assert_eq!(mosaic.iter().len(), 0);
     }

@@ -204,28 +204,23 @@ impl Tile {
             self.fill_layer(Status::Unfinished, band.statuses, size);
             band.depth.put(*area, repeat(f64::NEG_INFINITY));
             band.normals.put(*area, repeat(Vec3::ZERO));
-            band.points.clear(*area);
             return;
         }
         self.put_layer(band.color, size, color.iter().copied());
-        if self.content == Content::Nothing {
-            band.depth.clear(*area);
-            band.normals.clear(*area);
-            band.points.clear(*area);
-            return;
+        if self.content == Content::Found {
+            let kinds = outcomes.kinds().iter();
+            let coverage = |kind: &OutcomeKind| if *kind == OutcomeKind::Miss { 0 } else { u8::MAX };
+            let point = |(place, t): (usize, &f64)| {
+                let (column, row) = (place as u32 % area.width, place as u32 / area.width);
+                camera.ray(area.column + column, area.row + row).at(*t)
+            };
+            self.put_layer(band.coverage, size, kinds.clone().map(coverage));
+            self.put_layer(band.statuses, size, kinds.map(|kind| Status::from(*kind)));
+            self.put_layer(band.outcomes, size, outcomes.iter());
+            band.depth.put(*area, outcomes.distances().iter().copied());
+            band.normals.put(*area, normals.iter().map(|normal| normal.as_vec3()));
+            band.points.put(*area, outcomes.distances().iter().enumerate().map(point));
         }
-        let kinds = outcomes.kinds().iter();
-        let coverage = |kind: &OutcomeKind| if *kind == OutcomeKind::Miss { 0 } else { u8::MAX };
-        let point = |(place, t): (usize, &f64)| {
-            let (column, row) = (place as u32 % area.width, place as u32 / area.width);
-            camera.ray(area.column + column, area.row + row).at(*t)
-        };
-        self.put_layer(band.coverage, size, kinds.clone().map(coverage));
-        self.put_layer(band.statuses, size, kinds.map(|kind| Status::from(*kind)));
-        self.put_layer(band.outcomes, size, outcomes.iter());
-        band.depth.put(*area, outcomes.distances().iter().copied());
-        band.normals.put(*area, normals.iter().map(|normal| normal.as_vec3()));
-        band.points.put(*area, outcomes.distances().iter().enumerate().map(point));
     }
 
     /// Puts what is known of each of the tile's pixels into one layer, if the picture keeps it.
