@@ -181,7 +181,7 @@ impl Bundle {
             let is_open = at(&self.state).is_same(all(state::OPEN));
             let is_far = all(NEAR * sight.tolerance).is_less(rest * all(sight.unevenness));
             needed = (is_open & is_far).select(another, needed);
-            is_open.select(next, t).put(&mut self.t, part);
+            is_open.put(next, &mut self.t, part);
             value.put(&mut self.value, part);
             inverse.put(&mut self.inverse, part);
             step.put(&mut self.step, part);
@@ -228,16 +228,15 @@ impl Bundle {
             let was_open = before.is_same(open);
             let is_found = was_open & state.is_same(hit);
             let follows = is_found.select(nearer.between(root[0], root[1]), next);
-            let follows = was_open.select(follows, t);
-            follows.put(&mut self.t, part);
-            (follows - t).abs().put(&mut self.moved, part);
+            was_open.put(follows, &mut self.t, part);
+            was_open.select(follows - t, all(0.0)).abs().put(&mut self.moved, part);
             for (end, side) in self.wanted.iter_mut().enumerate() {
-                is_found.select(root[end], wanted[end]).put(side, part);
+                is_found.put(root[end], side, part);
             }
             (since_slopes + step).put(&mut self.step, part);
-            let state = was_open.select(state, before);
-            state.put(&mut self.state, part);
-            needed = state.is_same(open).select(is_far.select(another, needed.at_least(last)), needed);
+            was_open.put(state, &mut self.state, part);
+            let is_open = was_open & state.is_same(open);
+            needed = is_open.select(is_far.select(another, needed.at_least(last)), needed);
         }
         Need::of(needed.greatest())
     }

@@ -99,7 +99,7 @@ impl Pixels {
         let is_open = sign.is_same(all(0.0)) & self.are_open(simd, part);
         let t = self.t(simd, part);
         let is_known = way.abs().is_less(all(f64::INFINITY));
-        is_known.select(bow.in_reach(t + way), t).put(&mut self.t, part);
+        is_known.put(bow.in_reach(t + way), &mut self.t, part);
         is_open.select(all(state::OPEN), all(state::FREE)).put(&mut self.state, part);
         (sign * all(bow.sign)).put(&mut self.sign, part);
         course.slope.put(&mut self.known.slope, part);
@@ -156,7 +156,7 @@ impl Pixels {
     pub(super) fn follow<S: Simd>(&mut self, (simd, part): (S, usize), verdict: &Verdict<S>) {
         let was_open = self.are_open(simd, part);
         let put = |to: &mut Row, from: Lanes<S>| {
-            was_open.select(from, Lanes::of(simd, to, part)).put(to, part);
+            was_open.put(from, to, part);
         };
         put(&mut self.t, verdict.t);
         put(&mut self.wanted[0], verdict.wanted[0]);
