@@ -58,8 +58,8 @@ pub struct Outcomes {
     kinds: Vec<OutcomeKind>,
     /// NaN but for hits and touches.
     distances: Vec<f64>,
-    /// They mean nothing for misses.
-    brackets: Vec<Span>,
+    /// Where brackets start, and where they end. They mean nothing for misses.
+    brackets: [Vec<f64>; 2],
 }
 
 impl Outcomes {
@@ -69,7 +69,7 @@ impl Outcomes {
         self.kinds.resize(count, OutcomeKind::Miss);
         self.distances.clear();
         self.distances.resize(count, f64::NAN);
-        self.brackets.resize(count, Span::default());
+        self.brackets.iter_mut().for_each(|ends| ends.resize(count, f64::NAN));
     }
 
     /// How many there are.
@@ -95,7 +95,8 @@ impl Outcomes {
     /// The one of this number, below [`Outcomes::len`].
     #[inline]
     pub fn get(&self, number: usize) -> Outcome {
-        let bracket = self.brackets[number];
+        let [start, end] = self.brackets.each_ref().map(|ends| ends[number]);
+        let bracket = Span { start, end };
         let hit = Hit { t: self.distances[number], bracket };
         match self.kinds[number] {
             OutcomeKind::Hit => Outcome::Hit(hit),
@@ -115,7 +116,22 @@ impl Outcomes {
         };
         self.kinds[number] = outcome.into();
         self.distances[number] = t;
-        self.brackets[number] = bracket;
+        (self.brackets[0][number], self.brackets[1][number]) = (bracket.start, bracket.end);
+    }
+
+    /// Makes `N` of them hits, from this number on: at these distances, in brackets with these starts and ends.
+    pub(crate) fn put_hits<const N: usize>(
+        &mut self,
+        first: usize,
+        distances: &[f64; N],
+        brackets: &[[f64; N]; 2],
+    ) {
+        let numbers = first..first + N;
+        self.kinds[numbers.clone()].fill(OutcomeKind::Hit);
+        self.distances[numbers.clone()].copy_from_slice(distances);
+        for (ends, brackets) in self.brackets.iter_mut().zip(brackets) {
+            ends[numbers.clone()].copy_from_slice(brackets);
+        }
     }
 
     /// All of them.
@@ -136,7 +152,7 @@ impl FromIterator<Outcome> for Outcomes {
         for (number, outcome) in outcomes.into_iter().enumerate() {
             all.kinds.push(OutcomeKind::Miss);
             all.distances.push(f64::NAN);
-            all.brackets.push(Span::default());
+            all.brackets.iter_mut().for_each(|ends| ends.push(f64::NAN));
             all.set(number, outcome);
         }
         all
@@ -169,6 +185,17 @@ mod tests {
             assert_eq!(outcomes, vec![Outcome::Miss; count].into_iter().collect());
             assert!(are(outcomes.distances(), &vec![f64::NAN; count]));
         }
+    }
+
+    #[test]
+    fn hits_are_put_side_by_side() {
+        let mut outcomes = Outcomes::default();
+        outcomes.reset(4);
+        outcomes.set(3, Outcome::Undecided(Span { start: 1.0, end: 2.0 }));
+        outcomes.put_hits(1, &[1.5, 2.5], &[[1.0, 2.0], [1.75, 3.0]]);
+        let hit = |t, start, end| Outcome::Hit(Hit { t, bracket: Span { start, end } });
+        let last = Outcome::Undecided(Span { start: 1.0, end: 2.0 });
+        assert!(outcomes.iter().eq([Outcome::Miss, hit(1.5, 1.0, 1.75), hit(2.5, 2.0, 3.0), last]));
     }
 
     fn are(distances: &[f64], expected: &[f64]) -> bool {
