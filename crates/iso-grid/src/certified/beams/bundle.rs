@@ -40,7 +40,7 @@ pub(crate) struct Bundle {
 }
 
 /// A ray is near its root where another step is expected to leave it known to within no more than so many times the tolerance.
-const NEAR: f64 = 64.0;
+const NEAR: f64 = 8.0;
 
 /// What is to be taken of F next along the rays of a bundle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,6 +75,8 @@ pub(super) struct Sight {
     pub(super) turn: f64,
     /// How much a slope may differ from the one a unit of t away, as part of it, about.
     pub(super) bend: f64,
+    /// How much more it may than by its turn.
+    pub(super) sway: f64,
     /// How far rounding of F may move a root.
     pub(super) blur: f64,
     /// How wide the enclosure of a root may be.
@@ -153,8 +155,8 @@ impl Bundle {
         are_open
     }
 
-    /// A step towards the roots, by the values and the slopes of F at t: by Newton's method, bent as slopes are (Chebyshev), at first, and then by inverse
-    /// cubic interpolation (Hermite) between there and the last place. By the middle of the part's slopes where F would have one that it does
+    /// A step towards the roots, by the values and the slopes of F at t: to the root of a parabola that bends as slopes turn at first, and then by
+    /// inverse cubic interpolation (Hermite) between there and the last place. By the middle of the part's slopes where F would have one that it does
     /// not have. Says what is needed next.
     #[inline(always)]
     fn approach<S: Simd>(
@@ -174,24 +176,30 @@ impl Bundle {
             let computed = one / at(slopes);
             let inverse = (computed - middle).abs().is_at_most(most).select(computed, middle);
             let linear = value * inverse;
-            let bend = if is_first {
-                -(linear * linear * inverse * all(0.5 * sight.turn))
+            // How far the next place is from the root, about, as part of the step and of its square.
+            let (bend, [by_step, by_square]) = if is_first {
+                // The root of a parabola as a series (Catalan's numbers), whose next term is 42 times the fifth power.
+                let share = linear * inverse * all(0.5 * sight.turn);
+                let squared = share * share;
+                let series = one + share * (all(2.0) + share * (all(5.0) + share * all(14.0)));
+                (-(linear * share * series), [all(42.0) * squared * squared * share.abs(), all(sight.sway)])
             } else {
                 let (value_there, inverse_there) = (at(&self.value), at(&self.inverse));
                 let per_value = one / (value - value_there);
                 let (secant, share) = (before * per_value, value * per_value);
-                let change = inverse_there + inverse - (secant + secant);
-                share * (value * (inverse - secant) - value_there * share * change)
+                let curl = inverse_there + inverse - (secant + secant);
+                let bend = share * (value * (inverse - secant) - value_there * share * curl);
+                let change = before * all(sight.bend);
+                (bend, [all(0.0), all(sight.bend) * (change * change).at_most(one)])
             };
             // A bend is a small correction, or is not a number where F was the same before.
             let is_small = (bend + bend).abs().is_less(linear.abs());
             let nearer = is_small.select(t - linear + bend, t - linear);
             let next = nearer.between(at(&self.reach[0]), at(&self.reach[1]));
             let step = next - t;
-            let change = before * all(sight.bend);
-            let rest = step * step * all(sight.bend) * (change * change).at_most(one);
+            let rest = step.abs() * (by_step + step.abs() * by_square);
             let is_open = at(&self.state).is_same(all(state::OPEN));
-            let is_far = all(NEAR * sight.tolerance).is_less(rest * all(sight.unevenness));
+            let is_far = !(rest * all(sight.unevenness)).is_at_most(all(NEAR * sight.tolerance));
             needed = (is_open & is_far).select(another, needed);
             is_open.put(next, &mut self.t, part);
             value.put(&mut self.value, part);

@@ -134,6 +134,8 @@ pub(super) struct Form {
     pub(super) slope: Ball,
     /// How the slope changes with t, about; 0 where that is not known.
     pub(super) turn: f64,
+    /// How far slopes may be from changing evenly with column, row and t, about.
+    pub(super) sway: f64,
     /// What no sum of columns, rows and the rest exceeds.
     across: f64,
     /// The stretch on which it holds.
@@ -170,6 +172,7 @@ impl Form {
             incline: slope,
             slope,
             turn: 0.0,
+            sway: slope.radius,
             across: (1.0 + ROUNDING) * (known + vague),
             reach,
         };
@@ -198,6 +201,7 @@ impl Form {
             incline: Ball { middle: value.slopes.z / unit, radius: 0.0 }.widened(f64::MIN_POSITIVE),
             slope: Ball::of(slope),
             turn: slope.slopes.z / unit,
+            sway: slope.rest,
             across: (1.0 + ROUNDING) * across,
             reach,
         };
@@ -220,6 +224,7 @@ impl Form {
             incline: nothing,
             slope: nothing,
             turn: 0.0,
+            sway: f64::INFINITY,
             across: f64::INFINITY,
             reach,
         }

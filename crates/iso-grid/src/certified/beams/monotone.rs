@@ -35,11 +35,13 @@ impl Sight {
         let least = (1.0 - ROUNDING) * (slope.middle.abs() - slope.radius);
         let blur = (1.0 + ROUNDING) * error / least;
         let unevenness = (1.0 + ROUNDING) * slope.radius / least;
+        let length = form.reach.end - form.reach.start;
         (least > 0.0 && 2.0 * ROOM * blur <= tolerance).then(|| Self {
             inverse: 1.0 / slope.middle,
             unevenness,
             turn: form.turn,
-            bend: unevenness / (form.reach.end - form.reach.start),
+            bend: unevenness / length,
+            sway: form.sway / (least * length),
             blur,
             tolerance,
         })
