@@ -9,7 +9,6 @@ use super::rounding::Rounding;
 use super::sheaf::{Sheaf, Start};
 use super::subdivision::{Part, SMALLEST, Subdivision};
 use crate::certified::clip::Clip;
-use crate::lanes::ROW;
 use crate::{Kernel, Outcome, Span, Workspace};
 
 /// How many times narrower than what is wanted an enclosure must be that rounding of F alone makes wide, so that there is room for the rest.
@@ -153,8 +152,7 @@ impl Subdivision<'_> {
         self.pursue_bundles(bundles, part, (start, sight));
         for bundle in &*bundles {
             if let Some(first) = bundle.first_of_hits() {
-                self.outcomes.put_hits(first, &bundle.t, &bundle.wanted);
-                self.memory.open[first..][..ROW].fill(false);
+                self.end_neighbours(first, &bundle.t, &bundle.wanted);
                 continue;
             }
             bundle.hits().for_each(|(place, hit)| self.end(place, Outcome::Hit(hit)));

@@ -23,6 +23,7 @@ use crate::certified::Certified;
 use crate::certified::cells::Cell;
 use crate::certified::clip::Clip;
 use crate::certified::kernels::{BATCH, Kernels};
+use crate::lanes::{ROW, Row};
 use crate::normals::{Asked, answer};
 use crate::raster::Rays;
 use crate::{Hit, Kernel, Outcome, Outcomes, Span, Tile, Workspace};
@@ -371,5 +372,12 @@ impl<'a> Subdivision<'a> {
     pub(super) fn end(&mut self, place: usize, outcome: Outcome) {
         self.outcomes.set(place, outcome);
         self.memory.open[place] = false;
+    }
+
+    /// Notes that neighbours in a row, from this place on, meet the surface: at these distances, in brackets with these starts and ends.
+    #[inline]
+    pub(super) fn end_neighbours(&mut self, first: usize, distances: &Row, brackets: &[Row; 2]) {
+        self.outcomes.put_hits(first, distances, brackets);
+        self.memory.open[first..][..ROW].fill(false);
     }
 }
