@@ -20,8 +20,6 @@ pub(crate) struct Bundle {
     pub(super) columns: [u32; ROW],
     pub(super) rows: [u32; ROW],
     places: [u32; ROW],
-    /// Whether those follow each other.
-    are_neighbours: bool,
     rays: RayRow,
     /// Where the part's certificate holds inside the region: starts and ends.
     pub(super) reach: [Row; 2],
@@ -104,9 +102,11 @@ impl Bundle {
     /// The place of the first ray where all are neighbours in a row and have a root, as in most bundles.
     #[inline]
     pub(super) fn first_of_hits(&self) -> Option<usize> {
-        let are_hits =
-            self.are_neighbours && self.state.iter().fold(true, |all, state| all & (*state == state::HIT));
-        are_hits.then_some(self.places[0] as usize)
+        // Rays stand in the order of their places, and lanes that none fills are no hits.
+        let [first, .., last] = self.places;
+        let are_neighbours = last - first == ROW as u32 - 1;
+        let are_hits = are_neighbours && self.state.iter().all(|state| *state == state::HIT);
+        are_hits.then_some(first as usize)
     }
 
     /// The rays that have a root, and what encloses it.
@@ -135,8 +135,6 @@ impl Bundle {
         for lane in 0..ROW {
             self.places[lane] = self.rows[lane] * width + self.columns[lane];
         }
-        // Rays stand in the order of their places.
-        self.are_neighbours = self.places[ROW - 1] - self.places[0] == ROW as u32 - 1;
         for lane in 0..ROW {
             t[lane] = start.at(columns[lane], rows[lane]);
         }
@@ -268,24 +266,16 @@ impl Bundle {
         let mut units = [[0.0; ROW]; 4];
         put_units(simd, gradients, &mut units);
         let [x, y, z, are_plain] = &units;
-        let normal = |lane: usize| DVec3::new(x[lane], y[lane], z[lane]);
         let (all, mut is_there) = (|number| Lanes::all(simd, number), Row::default());
-        let mut count = all(0.0);
         for part in 0..parts::<S>() {
             let at = |row: &Row| Lanes::of(simd, row, part);
             let is_near =
                 at(&self.moved).is_at_most(all(distance)) & at(&self.state).is_same(all(state::HIT));
             let there = is_near.select(at(are_plain), all(0.0));
             there.put(&mut is_there, part);
-            count = count + there;
-        }
-        if self.are_neighbours && count.sum() == ROW as f64 {
-            let normals = &mut normals[self.places[0] as usize..][..ROW];
-            normals.copy_from_slice(&std::array::from_fn::<_, ROW, _>(normal));
-            return;
         }
         for lane in (0..ROW).filter(|lane| is_there[*lane] > 0.0) {
-            normals[self.places[lane] as usize] = normal(lane);
+            normals[self.places[lane] as usize] = DVec3::new(x[lane], y[lane], z[lane]);
         }
     }
 }

@@ -420,6 +420,9 @@ mod tests {
                     forms_of(&surface_of(formula), (&beam, tile.direction()), &arguments).unwrap();
                 let reach = Span { start: 1.0, end: 1.001 };
                 let form = Form::affine(&beam, reach, (t, unit), &value, &slope);
+                // Directions that differ count as uneven.
+                let is_even = form.sway <= 1e-2 * form.slope.radius + 1e-12;
+                assert!(is_even || !is_parallel, "{formula}: {form:?}");
                 let off = (form.turn - turn).abs();
                 assert!(off <= 1e-2 * turn.abs() + 1e-12, "{formula}: {} {turn}", form.turn);
             }

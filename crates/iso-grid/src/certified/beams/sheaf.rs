@@ -110,18 +110,11 @@ impl Sheaf {
         self.columns.resize(Self::MOST + 1, 0);
         self.rows.resize(Self::MOST, 0);
         let range = start.likely((column, row), open.len());
-        let open = &open[range.clone()];
-        let (first, mut rays) = (column + range.start, self.rays);
-        if open.iter().fold(true, |all, is_open| all & is_open) {
-            rays += open.len();
-            let columns = self.columns[self.rays..rays].iter_mut();
-            columns.zip(first as u32..).for_each(|(place, column)| *place = column);
-        } else {
-            for (number, is_open) in open.iter().enumerate() {
-                // Written over by the next unless it is counted, for which of them are cannot be foreseen.
-                self.columns[rays] = (first + number) as u32;
-                rays += usize::from(*is_open);
-            }
+        let mut rays = self.rays;
+        for (number, is_open) in range.clone().zip(&open[range]) {
+            // Written over by the next unless it is counted, for which of them are cannot be foreseen.
+            self.columns[rays] = (column + number) as u32;
+            rays += usize::from(*is_open);
         }
         self.rows[self.rays..rays].fill(row as u32);
         self.rays = rays;

@@ -183,6 +183,27 @@ fn the_first_step_bends_as_slopes_do_where_that_is_known() {
     }
 }
 
+/// One step ends at the root of a parabola, and another is asked for where slopes are known to be no nearer to even.
+#[test]
+fn slopes_that_sway_ask_for_another_step() {
+    let (wanted, reach) = (Span { start: 0.5, end: 1.5 }, Span { start: 0.0, end: 2.0 });
+    let model = Model { t: 1.0, by_column: 0.0, by_row: 0.0, uncertainty: 0.2 };
+    // F is (t − 1) + (t − 1)²/2, taken at 1.001.
+    let [value, slope] = [0.0010005, 1.001].map(|number| [number; ROW]);
+    for (sway, expected) in
+        [(0.0, Need::Last), (1e-6, Need::Last), (0.25, Need::Slopes), (f64::NAN, Need::Slopes)]
+    {
+        let mut sheaf = Sheaf::default();
+        sheaf.add((0, 0), &[true], &Start::new(&model, (0.0, 0.0), wanted));
+        let [bundle] = sheaf.take([wanted, reach]) else { panic!("one ray is one bundle") };
+        (bundle.t, bundle.step) = ([1.001; ROW], [f64::INFINITY; ROW]);
+        let sight =
+            Sight { inverse: 1.0, turn: 1.0, unevenness: 0.5, bend: 0.25, sway, blur: 0.0, tolerance: 1e-12 };
+        assert_eq!(bundle.approach(Scalar::new(), [&value, &slope], (&sight, true)), expected, "{sway}");
+        assert!((bundle.t[0] - 1.0).abs() < 1e-15, "{}", bundle.t[0]);
+    }
+}
+
 /// Where the model is as good as what is wanted. Nothing is left of rays that the bundle held before.
 #[test]
 fn the_last_look_may_be_the_first() {
