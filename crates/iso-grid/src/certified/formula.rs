@@ -78,7 +78,7 @@ impl Default for Formulas {
 impl Formulas {
     /// The one with this program, which is what is left of `outer`. It is kept while there is room.
     pub(super) fn one_of(&self, program: &Program, outer: &Formula) -> Arc<Formula> {
-        let patience = Patience::limited(program);
+        let patience = Patience::limited(program.operations());
         self.one_with(program, outer, patience)
     }
 
@@ -110,9 +110,9 @@ impl Formulas {
 struct Patience(AtomicU64);
 
 impl Patience {
-    /// As long as something is not asked for often.
-    fn limited(program: &Program) -> Self {
-        Self(AtomicU64::new(OFTEN * program.operations().max(1) as u64))
+    /// As long as something of so many operations is not asked for often.
+    fn limited(operations: usize) -> Self {
+        Self(AtomicU64::new(OFTEN * operations.max(1) as u64))
     }
 
     /// Until something is first asked for.
@@ -164,8 +164,11 @@ impl Formula {
             _ => 0,
         };
         if is_left_to_places {
-            let formula =
-                Self::new(surface.made_for_few_runs(), Patience::limited(program), least_with_forms);
+            let formula = Self::new(
+                surface.made_for_few_runs(),
+                Patience::limited(program.operations()),
+                least_with_forms,
+            );
             return Ok(Self { is_whole: true, ..formula });
         }
         Kernel::of_proofs(Kernel::Forms.pays(program)).try_for_each(|kernel| surface.compile(kernel))?;
@@ -174,11 +177,12 @@ impl Formula {
 
     fn new(surface: Surface, patience: Patience, least_with_forms: usize) -> Self {
         let program = surface.program();
-        let of_kernels = Kernel::ALL.map(|_| Patience::limited(program));
+        let operations = program.operations();
+        let of_kernels = Kernel::ALL.map(|_| Patience::limited(operations));
         let (has_branches, is_cut) = (program.has_branches(), program.is_cut());
         Self {
             least_with_forms,
-            has_forms: program.operations() >= least_with_forms && Kernel::Forms.pays(program),
+            has_forms: operations >= least_with_forms && Kernel::Forms.pays(program),
             has_hessian: Kernel::HessianEnclosures.pays(program),
             surface: Arc::new(surface),
             compiled: OnceLock::new(),

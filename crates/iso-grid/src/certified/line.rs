@@ -75,18 +75,7 @@ impl<'a> Line<'a> {
 
     /// The box around a stretch of the ray.
     pub(super) fn bounds(&self, stretch: Span) -> Bounds {
-        [0, 1, 2].map(|axis| {
-            let (origin, direction) = (self.ray.origin[axis], self.ray.direction[axis]);
-            if direction == 0.0 {
-                return Interval::point(origin);
-            }
-            let (near, far) =
-                if direction > 0.0 { (stretch.start, stretch.end) } else { (stretch.end, stretch.start) };
-            Interval {
-                lo: round_down(origin + round_down(near * direction)),
-                hi: round_up(origin + round_up(far * direction)),
-            }
-        })
+        bounds_along(&self.ray, stretch)
     }
 
     fn boxes(&self, stretches: &[Span]) -> [Bounds; BATCH] {
@@ -109,6 +98,22 @@ impl<'a> Line<'a> {
         }
         slope
     }
+}
+
+/// The box around a stretch of a ray.
+pub(super) fn bounds_along(ray: &Ray, stretch: Span) -> Bounds {
+    [0, 1, 2].map(|axis| {
+        let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
+        if direction == 0.0 {
+            return Interval::point(origin);
+        }
+        let (near, far) =
+            if direction > 0.0 { (stretch.start, stretch.end) } else { (stretch.end, stretch.start) };
+        Interval {
+            lo: round_down(origin + round_down(near * direction)),
+            hi: round_up(origin + round_up(far * direction)),
+        }
+    })
 }
 
 /// Encloses the products of the finite `factor`, which is not zero, and the numbers of `interval`.

@@ -12,7 +12,7 @@ use super::made::{Combinations, MOST, Made};
 use super::packet::{OpenRays, Packet, Signed, for_all};
 use super::pixels::{End, Pixels};
 use super::signs::{Event, Root, Roots, Signs, count_together, hull};
-use super::subdivision::{Memory, Part, Subdivision};
+use super::subdivision::{KnownAlong, Memory, Part, Subdivision};
 use crate::area::Area;
 use crate::lanes::{Lanes, ROW, Row, parts};
 use crate::{Hit, Outcome, Span, Tile};
@@ -239,7 +239,7 @@ impl Subdivision<'_> {
             }
             for meeting in &meetings {
                 if !meeting.is_clear {
-                    self.search_one(self.position(meeting.place), part.stretch);
+                    self.search_one(self.position(meeting.place), part.stretch, None);
                 } else if !meeting.roots.in_order().is_empty() {
                     self.end_at_faces(part, (faces, made), meeting);
                 }
@@ -280,7 +280,7 @@ impl Subdivision<'_> {
         let pixels_of = Alone { rays, face, packets, asked: self.asked(part), pixels: &mut pixels };
         self.workspace.arch.dispatch(pixels_of);
         self.pursue(&mut pixels, face.kernels, &face.bow);
-        self.settle(&pixels, face.kernels);
+        self.settle(&pixels, KnownAlong { kernels: face.kernels, span: self.asked(part) });
         self.memory.pixels = pixels;
     }
 
@@ -375,17 +375,17 @@ impl Subdivision<'_> {
                     let t = bracket.start + 0.5 * (bracket.end - bracket.start);
                     return self.end(place, Outcome::Touch(Hit { t, bracket }));
                 }
-                Event::Contact => self.search_one(self.position(place), bracket),
+                Event::Contact => self.search_one(self.position(place), bracket, None),
                 Event::Unclear => {
                     roots = &[];
                     known_to = bracket.end;
-                    self.search_one(self.position(place), bracket);
+                    self.search_one(self.position(place), bracket, None);
                 }
             }
         }
         let rest = Span { start: known_to, end: part.stretch.end };
         if self.memory.open[place] && rest.start < rest.end {
-            self.search_one(self.position(place), rest);
+            self.search_one(self.position(place), rest, None);
         }
     }
 }

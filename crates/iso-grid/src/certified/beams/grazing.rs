@@ -10,7 +10,7 @@ use super::bend::Bend;
 use super::faces::{Face, Outline};
 use super::packet::{OpenRays, Packet, Signed, for_all};
 use super::pixels::{End, Pixels};
-use super::subdivision::{Memory, Part, Subdivision};
+use super::subdivision::{KnownAlong, Memory, Part, Subdivision};
 use crate::lanes::{Lanes, ROW, Row, parts};
 use crate::{Kernel, Span, Tile};
 
@@ -82,19 +82,19 @@ impl Subdivision<'_> {
         let is_followed = self.start_bent(part, face, &mut pixels);
         if is_followed {
             self.pursue(&mut pixels, face.kernels, &face.bow);
-            self.settle(&pixels, face.kernels);
+            self.settle(&pixels, KnownAlong { kernels: face.kernels, span: part.form.reach });
         }
         self.memory.pixels = pixels;
         is_followed
     }
 
-    /// Ends rays that were pursued by kernels of a number, or searches them.
-    pub(super) fn settle(&mut self, pixels: &[Pixels], kernels: u32) {
+    /// Ends rays that were pursued by what is known along them, or searches them.
+    pub(super) fn settle(&mut self, pixels: &[Pixels], known: KnownAlong) {
         for (place, end) in pixels.iter().flat_map(Pixels::ends) {
             match end {
                 End::Free(_) => {}
-                End::Hit(hit, _) => self.meet(place, hit, kernels),
-                End::Lost(wanted) => self.search_one(self.position(place), wanted),
+                End::Hit(hit, _) => self.meet(place, hit, known.kernels),
+                End::Lost(wanted) => self.search_one(self.position(place), wanted, Some(known)),
             }
         }
     }

@@ -11,6 +11,26 @@ pub(super) const MOST: usize = 4;
 /// How many combinations of signs there are, of which each is negative, unknown or positive.
 const COMBINATIONS: usize = 3_usize.pow(MOST as u32);
 
+/// A sign for each of them, at the place whose digits to the base of three are the signs of the faces and one more: 0 where it is not known, NaN
+/// where there is nothing.
+type Signs = [f64; COMBINATIONS];
+
+/// The sign of each face.
+const OF_FACES: [Signs; MOST] = {
+    let mut signs = [[0.0; COMBINATIONS]; MOST];
+    let mut place = 0;
+    while place < COMBINATIONS {
+        let (mut face, mut digits) = (0, place);
+        while face < MOST {
+            signs[face][place] = (digits % 3) as f64 - 1.0;
+            digits /= 3;
+            face += 1;
+        }
+        place += 1;
+    }
+    signs
+};
+
 /// What F, or a function of which it is made, comes to on a part.
 pub(super) enum Made {
     /// It is of this sign everywhere.
@@ -26,31 +46,39 @@ pub(super) enum Made {
 }
 
 impl Made {
-    /// The sign where faces have these, 0 where that is not known, NaN where there is nothing.
-    fn sign(&self, of_faces: &[f64; MOST]) -> f64 {
+    /// Its sign for all signs that faces may have.
+    fn signs(&self) -> Signs {
         match self {
-            Self::Signed(sign) => *sign,
-            Self::Face(number) => of_faces[*number],
+            Self::Signed(sign) => [*sign; COMBINATIONS],
+            Self::Face(number) => OF_FACES[*number],
             Self::Of(extreme, parts) => {
-                let signs = parts.iter().map(|part| part.sign(of_faces));
-                match extreme {
-                    Extreme::Least => signs.fold(1.0, f64::min),
-                    Extreme::Greatest => signs.fold(-1.0, f64::max),
+                let mut signs = [-deciding(*extreme); COMBINATIONS];
+                for part in parts {
+                    let both = signs.iter_mut().zip(part.signs());
+                    match extreme {
+                        Extreme::Least => both.for_each(|(sign, of)| *sign = sign.min(of)),
+                        Extreme::Greatest => both.for_each(|(sign, of)| *sign = sign.max(of)),
+                    }
                 }
+                signs
             }
             Self::Choice(by, sides) => {
-                match (of_faces[*by], sides.each_ref().map(|side| side.sign(of_faces))) {
-                    (..0.0, [below, _]) => below,
-                    (0.0, [below, above]) if below != above => 0.0,
-                    (_, [_, above]) => above,
-                }
+                let [below, above] = sides.each_ref().map(Self::signs);
+                std::array::from_fn(|place| match OF_FACES[*by][place] {
+                    ..0.0 => below[place],
+                    0.0 if below[place] != above[place] => 0.0,
+                    _ => above[place],
+                })
             }
-            Self::Within(both) => match both.each_ref().map(|made| made.sign(of_faces)) {
-                [..0.0, _] => f64::NAN,
-                // Where the function is zero, the margin may be so too.
-                [0.0, _] => 0.0,
-                [_, sign] => sign,
-            },
+            Self::Within(both) => {
+                let [margin, function] = both.each_ref().map(Self::signs);
+                std::array::from_fn(|place| match margin[place] {
+                    ..0.0 => f64::NAN,
+                    // Where the function is zero, the margin may be so too.
+                    0.0 => 0.0,
+                    _ => function[place],
+                })
+            }
         }
     }
 
@@ -78,7 +106,7 @@ impl Made {
 pub(super) struct Combinations {
     /// How many faces there are.
     faces: usize,
-    of: [f64; COMBINATIONS],
+    of: Signs,
     /// Whether F is the least or the greatest of each face and what else there may be.
     direct: [Option<Extreme>; MOST],
     /// Whether F may be zero where each face is, and not only made otherwise before and behind it.
@@ -92,26 +120,12 @@ impl Combinations {
     pub(super) fn new(made: &Made, faces: usize) -> Self {
         let mut found = Self {
             faces,
-            of: [0.0; COMBINATIONS],
+            of: made.signs(),
             direct: [None; MOST],
             are_met: [false; MOST],
             is_cut: matches!(made, Made::Within(_)),
         };
         made.note_faces(&mut found.are_met);
-        let mut signs = [0.0; MOST];
-        signs[..faces].fill(-1.0);
-        // In the order of their places: one after the other, as a number of three digits is counted up.
-        let first = place_of(&signs);
-        for of in &mut found.of[first..first + 3_usize.pow(faces as u32)] {
-            *of = made.sign(&signs);
-            for sign in &mut signs[..faces] {
-                if *sign < 1.0 {
-                    *sign += 1.0;
-                    break;
-                }
-                *sign = -1.0;
-            }
-        }
         if let Made::Of(extreme, parts) = made {
             for part in parts {
                 if let Made::Face(number) = part {

@@ -157,7 +157,7 @@ impl Subdivision<'_> {
             }
             bundle.hits().for_each(|(place, hit)| self.end(place, Outcome::Hit(hit)));
             for (place, stretch) in bundle.lost() {
-                self.search_one(self.position(place), stretch);
+                self.search_one(self.position(place), stretch, part.known());
             }
         }
     }
@@ -209,7 +209,7 @@ impl Subdivision<'_> {
             return None;
         }
         if reach.start > reach.end {
-            self.search_one((column, row), wanted);
+            self.search_one((column, row), wanted, part.known());
             return None;
         }
         Some([wanted, reach])

@@ -23,6 +23,7 @@ use crate::certified::Certified;
 use crate::certified::cells::Cell;
 use crate::certified::clip::Clip;
 use crate::certified::kernels::{BATCH, Kernels};
+use crate::certified::line::bounds_along;
 use crate::lanes::{ROW, Row};
 use crate::normals::{Asked, answer};
 use crate::raster::Rays;
@@ -55,6 +56,22 @@ pub(super) struct Part {
     pub(super) form: Form,
     /// Whether all of it lies in the region, and a little more at both ends too.
     pub(super) is_inside: bool,
+}
+
+impl Part {
+    /// What is known of F along its rays, unless they may leave the region.
+    pub(super) fn known(&self) -> Option<KnownAlong> {
+        self.is_inside.then_some(KnownAlong { kernels: self.kernels, span: self.form.reach })
+    }
+}
+
+/// Kernels whose signs F has along a ray.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct KnownAlong {
+    /// Their number.
+    pub(super) kernels: u32,
+    /// Where F has them.
+    pub(super) span: Span,
 }
 
 /// How a function is made of others: the numbers of their kernels.
@@ -319,15 +336,20 @@ impl<'a> Subdivision<'a> {
         for row in area.rows() {
             for column in area.columns() {
                 if self.memory.open[row * self.tile.width() + column] {
-                    self.search_one((column, row), part.stretch);
+                    self.search_one((column, row), part.stretch, part.known());
                 }
             }
         }
     }
 
-    /// Searches a stretch of the ray in a column and a row, by what F comes to in the place around it: what is left of F on a part has its
-    /// signs along the part's rays, and the search may look a little beyond.
-    pub(super) fn search_one(&mut self, (column, row): (usize, usize), stretch: Span) {
+    /// Searches a stretch of the ray in a column and a row: by what is known along the ray, where that is all of the stretch, for its kernels were
+    /// asked for before, or else by what F comes to in the place around it.
+    pub(super) fn search_one(
+        &mut self,
+        (column, row): (usize, usize),
+        stretch: Span,
+        known: Option<KnownAlong>,
+    ) {
         let ray = self.tile.ray(column, row);
         let Some(clip) = Clip::new(&self.certified.region, &ray) else { return };
         let outer = clip.outer;
@@ -335,15 +357,23 @@ impl<'a> Subdivision<'a> {
         if stretch.start > stretch.end {
             return;
         }
-        let (start, end) = (ray.at(stretch.start), ray.at(stretch.end));
-        let kernels = self.certified.places.kernels(start.min(end), start.max(end));
-        let kernels = self.known_number_of(kernels, 0);
-        let local = &self.kernels[kernels as usize];
-        let outcome = self.certified.search(self.workspace, ray, clip, (Cell::SMALLEST, stretch), local);
         let place = row * self.tile.width() + column;
+        let known = known.filter(|known| known.span.start <= stretch.start && stretch.end <= known.span.end);
+        let (number, local) = match known {
+            Some(KnownAlong { kernels, span }) => {
+                (kernels, Arc::new(self.kernels(kernels).within(bounds_along(&ray, span))))
+            }
+            None => {
+                let (start, end) = (ray.at(stretch.start), ray.at(stretch.end));
+                let kernels = self.certified.places.kernels(start.min(end), start.max(end));
+                let number = self.known_number_of(kernels, 0);
+                (number, Arc::clone(self.kernels(number)))
+            }
+        };
+        let outcome = self.certified.search(self.workspace, ray, clip, (Cell::SMALLEST, stretch), &local);
         match outcome {
             Outcome::Miss => {}
-            Outcome::Hit(hit) => self.meet(place, hit, kernels),
+            Outcome::Hit(hit) => self.meet(place, hit, number),
             _ => self.end(place, outcome),
         }
     }

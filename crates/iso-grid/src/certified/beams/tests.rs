@@ -6,9 +6,9 @@ use glam::DVec3;
 use pulp::Arch;
 
 use super::sheaf::Sheaf;
-use super::subdivision::{Known, Subdivision};
+use super::subdivision::{Known, KnownAlong, Subdivision};
 use crate::testing::surface_of;
-use crate::{Certified, Outcome, OutcomeKind, Outcomes, Raster, Region, Tile, Tracer, Workspace};
+use crate::{Certified, Outcome, OutcomeKind, Outcomes, Raster, Region, Span, Tile, Tracer, Workspace};
 
 /// Silhouettes, edges of unions and of intersections, one that is cut, and a limb.
 const FORMULAS: [&str; 5] = [
@@ -95,4 +95,29 @@ fn what_is_left_on_a_slab_is_not_known_elsewhere() {
     assert_eq!(number_of(&mut subdivision, first), first, "and the other one");
     let again = number_of(&mut subdivision, left);
     assert!(again != left && !subdivision.is_narrowed(again));
+}
+
+/// Of two planes, the nearer one is met wherever the farther one alone is not known to be F.
+#[test]
+fn a_ray_is_searched_by_what_is_known_along_it_where_that_is_all_of_the_stretch() {
+    let region = Region::new(DVec3::splat(-1.5), DVec3::splat(1.5)).unwrap();
+    let certified = Certified::new(&surface_of("min(0.7 - z, 0.2 - z + x/9)"), region).unwrap();
+    let other = Certified::new(&surface_of("0.7 - z"), region).unwrap();
+    let rays = [crate::Ray { origin: DVec3::new(0.1, 0.2, -1.25), direction: DVec3::Z }];
+    let found = |stretch: Span, known: Option<Span>| {
+        let (mut workspace, mut outcomes) = (Workspace::default(), Outcomes::default());
+        let ends = (&mut outcomes, None);
+        let mut subdivision = Subdivision::new(&certified, &mut workspace, rays[..].into(), ends).unwrap();
+        let kernels = subdivision.number_of(Arc::clone(&other.kernels));
+        subdivision.search_one((0, 0), stretch, known.map(|span| KnownAlong { kernels, span }));
+        let Some(Outcome::Hit(hit)) = outcomes.iter().next() else { panic!("no hit") };
+        hit.t
+    };
+    let (nearer, farther) = (1.45 + 0.1 / 9.0, 1.95);
+    let stretch = Span { start: 0.25, end: 2.25 };
+    let [all, less] = [stretch, Span { end: 2.0, ..stretch }];
+    for (known, expected) in [(None, nearer), (Some(less), nearer), (Some(all), farther)] {
+        let t = found(stretch, known);
+        assert!((t - expected).abs() < 1e-9, "{known:?}: {t}");
+    }
 }
