@@ -207,6 +207,14 @@ impl Findings {
     ) {
         use Operation as O;
         let demand = self.demands[id.index()];
+        if demand == Demand::Value && !program.nodes[id.index()].may_be_decided() {
+            // Most nodes are such.
+            for operand in &operands[..operation.arity()] {
+                self.demands[operand.index()] = Demand::Value;
+                needed.insert(*operand);
+            }
+            return;
+        }
         let enclosures = operands.map(|operand| self.enclosures[operand.index()]);
         let decision =
             decision(operation, enclosures, self.enclosures[id.index()]).or_else(|| match demand {

@@ -22,7 +22,7 @@ use crate::lanes::{Lanes, Row, parts};
 use crate::{Kernel, Tile};
 
 /// With more open ones on the way, no others are asked for: it is unlikely that those decide enough.
-const TOO_MANY: usize = 2 * MOST;
+const TOO_MANY: usize = 8;
 
 /// Of functions of more operations values are asked for first, which take much less time than gradients and most often tell a sign.
 const LONG: u64 = 100;
