@@ -5,8 +5,8 @@ use pulp::Simd;
 
 use crate::lanes::{Lanes, ROW, Row, parts};
 
-/// More functions are left to smaller parts, where fewer of them matter. Measured in instructions, against four: a tree of capsules takes 7 % fewer
-/// and a rotunda of cylinders 1 % more; with six 8 % fewer and 1 % more.
+/// More functions are left to smaller parts, where fewer of them matter. Measured in instructions, against four: of the models the tree takes 7 % fewer
+/// and the rotunda 1 % more; with six 8 % fewer and 1 % more.
 pub(super) const MOST: usize = 5;
 
 /// How many combinations of signs there are, of which each is negative, unknown or positive.
