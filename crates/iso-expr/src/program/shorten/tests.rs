@@ -68,6 +68,7 @@ fn what_is_open_or_may_be_undefined_stays() {
         // Its value matters, here and beside its sign.
         "exp(min(x - 0.5, y - 0.25))",
         "max(min(x - 0.5, y - 0.25), exp(min(x - 0.5, y - 0.25)) - 1)",
+        "min(min(4*x, 1.55 + exp(sin(cos(exp(sin(y)))))^3) - 1.5, min(4*x, 1.55 + exp(sin(cos(exp(sin(y)))))^3)^2 - 5*z)",
         // Two sides of it matter.
         "max(min(x - 0.3, y - 0.1), min(x - 0.3, y - 0.1) - 0.5)",
         // It matters on which side of a number other than zero the minimum lies.

@@ -276,11 +276,11 @@ mod tests {
         }
         let nothing = first([-1.0, -1.0]);
         assert!(found.sign(&nothing).is_nan() && found.may_be_nothing(&nothing, [].into_iter()));
-        assert!(found.may_be_nothing(&first([1.0, 1.0, 0.0, 0.0]), [0, 1].into_iter()));
-        assert!(!found.may_be_nothing(&first([1.0, 1.0, 0.0, 0.0]), [0].into_iter()));
+        assert!(found.may_be_nothing(&first([1.0, 1.0]), [0, 1].into_iter()));
+        assert!(!found.may_be_nothing(&first([1.0, 1.0]), [0].into_iter()));
         assert!(found.is_met(0) && !found.is_met(1));
-        assert_eq!(found.face_alone(&first([0.0, 1.0, 0.0, 0.0])), Some(0));
-        assert_eq!(found.face_alone(&first([0.0, -1.0, 0.0, 0.0])), None);
+        assert_eq!(found.face_alone(&first([0.0, 1.0])), Some(0));
+        assert_eq!(found.face_alone(&first([0.0, -1.0])), None);
     }
 
     /// A corner is cut off a union: max(min(a, b, 1), c).
@@ -293,7 +293,7 @@ mod tests {
             for b in [-1.0, 0.0, 1.0] {
                 for c in [-1.0, 0.0, 1.0] {
                     let expected = f64::max(f64::min(a, b), c);
-                    assert_eq!(found.sign(&first([a, b, c, 0.0])), expected, "{a}, {b}, {c}");
+                    assert_eq!(found.sign(&first([a, b, c])), expected, "{a}, {b}, {c}");
                     let mut of_faces = first([a, b, c]).map(|sign| [sign; ROW]);
                     of_faces[2][3] = 1.0;
                     let signs = found.signs(pulp::Scalar::new(), &of_faces);

@@ -97,11 +97,11 @@ fn what_is_left_on_a_slab_is_not_known_elsewhere() {
     assert!(again != left && !subdivision.is_narrowed(again));
 }
 
-/// Of two planes, the nearer one is met wherever the farther one alone is not known to be F.
+/// Of two planes, the nearer one is met wherever the farther one alone is not known to be F. A third one is left out in any place.
 #[test]
 fn a_ray_is_searched_by_what_is_known_along_it_where_that_is_all_of_the_stretch() {
     let region = Region::new(DVec3::splat(-1.5), DVec3::splat(1.5)).unwrap();
-    let certified = Certified::new(&surface_of("min(0.7 - z, 0.2 - z + x/9)"), region).unwrap();
+    let certified = Certified::new(&surface_of("min(0.7 - z, 0.2 - z + x/9, y + 3)"), region).unwrap();
     let other = Certified::new(&surface_of("0.7 - z"), region).unwrap();
     let rays = [crate::Ray { origin: DVec3::new(0.1, 0.2, -1.25), direction: DVec3::Z }];
     let found = |stretch: Span, known: Option<Span>| {
@@ -111,13 +111,14 @@ fn a_ray_is_searched_by_what_is_known_along_it_where_that_is_all_of_the_stretch(
         let kernels = subdivision.number_of(Arc::clone(&other.kernels));
         subdivision.search_one((0, 0), stretch, known.map(|span| KnownAlong { kernels, span }));
         let Some(Outcome::Hit(hit)) = outcomes.iter().next() else { panic!("no hit") };
-        hit.t
+        (hit.t, workspace.counters.operations)
     };
     let (nearer, farther) = (1.45 + 0.1 / 9.0, 1.95);
-    let stretch = Span { start: 0.25, end: 2.25 };
-    let [all, less] = [stretch, Span { end: 2.0, ..stretch }];
+    let stretch = Span { start: 1.4, end: 2.0 };
+    let [all, less] = [stretch, Span { end: 1.98, ..stretch }];
     for (known, expected) in [(None, nearer), (Some(less), nearer), (Some(all), farther)] {
-        let t = found(stretch, known);
+        let (t, _) = found(stretch, known);
         assert!((t - expected).abs() < 1e-9, "{known:?}: {t}");
     }
+    assert_eq!(found(stretch, Some(less)), found(stretch, None), "by what is left in the place");
 }
