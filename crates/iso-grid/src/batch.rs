@@ -5,7 +5,6 @@ use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::{BatchKernel, BoxKernel, Decorated, Decoration, Interval, Program, Scratch};
 
 use crate::Ray;
-use crate::lanes::{ROW, Row};
 
 /// Points coordinate by coordinate, and room for what a kernel says of them.
 #[derive(Debug, Default)]
@@ -13,8 +12,6 @@ pub(crate) struct PointBatch {
     x: Vec<f64>,
     y: Vec<f64>,
     z: Vec<f64>,
-    /// Of the ray at each point, for slopes.
-    directions: [Vec<f64>; 3],
     values: Vec<f64>,
 }
 
@@ -29,16 +26,6 @@ impl PointBatch {
         self.x.push(point.x);
         self.y.push(point.y);
         self.z.push(point.z);
-    }
-
-    /// Room for so many rows of points in place of all others, coordinate by coordinate.
-    pub(crate) fn rows(&mut self, count: usize) -> impl Iterator<Item = [&mut Row; 3]> {
-        rows([&mut self.x, &mut self.y, &mut self.z], count)
-    }
-
-    /// The same for the directions of rays.
-    pub(crate) fn rows_of_directions(&mut self, count: usize) -> impl Iterator<Item = [&mut Row; 3]> {
-        rows(self.directions.each_mut(), count)
     }
 
     /// Adds the points of a ray at these places.
@@ -67,25 +54,6 @@ impl PointBatch {
         }
         &self.values
     }
-
-    /// F and its slope along the directions at all points, laid out in the same way.
-    pub(crate) fn slopes(&mut self, kernel: &dyn BatchKernel, scratch: &mut Scratch) -> &[f64] {
-        self.values.resize(2 * self.len(), f64::NAN);
-        if self.len() > 0 {
-            let [dx, dy, dz] = &self.directions;
-            kernel.evaluate(scratch, &[&self.x, &self.y, &self.z, dx, dy, dz], &mut self.values);
-        }
-        &self.values
-    }
-}
-
-/// Room for so many rows of vectors in place of all others, coordinate by coordinate.
-fn rows(vectors: [&mut Vec<f64>; 3], count: usize) -> impl Iterator<Item = [&mut Row; 3]> {
-    let [x, y, z] = vectors.map(|coordinates| {
-        coordinates.resize(count * ROW, 0.0);
-        coordinates.as_chunks_mut().0.iter_mut()
-    });
-    x.zip(y).zip(z).map(|((x, y), z)| [x, y, z])
 }
 
 /// An affine form: the numbers middle + ∑ slopeᵢ·eᵢ + r for the same eᵢ from −1 to 1, and |r| ≤ rest. Nothing is known where a part is

@@ -16,6 +16,7 @@ mod method;
 mod normals;
 mod outcomes;
 mod paper;
+mod point_rows;
 mod raster;
 mod ray;
 mod region;

@@ -7,8 +7,8 @@ use iso_expr::{BatchKernel, CompileError, Scratch};
 use pulp::{Simd, WithSimd};
 
 use crate::area::Area;
-use crate::batch::PointBatch;
 use crate::lanes::{Lanes, ROW, Row, parts};
+use crate::point_rows::PointRows;
 use crate::{Hit, Kernel, Outcome, OutcomeKind, Outcomes, Span, Surface, Tile, Tracer, Workspace};
 
 /// How many rows of points are asked about by one call of the kernel.
@@ -132,9 +132,9 @@ pub(crate) fn answer(
     asked: &[Asked],
     normals: &mut [DVec3],
 ) {
-    let Workspace { arch, scratch, counters, points, .. } = workspace;
+    let Workspace { arch, scratch, counters, point_rows, .. } = workspace;
     counters.gradient_evaluations += asked.len() as u64;
-    arch.dispatch(Search { kernel, tile, asked, points, scratch, normals });
+    arch.dispatch(Search { kernel, tile, asked, points: point_rows, scratch, normals });
 }
 
 /// The search for the normals of points on the rays of a tile.
@@ -142,7 +142,7 @@ struct Search<'a> {
     kernel: &'a dyn BatchKernel,
     tile: Tile<'a>,
     asked: &'a [Asked],
-    points: &'a mut PointBatch,
+    points: &'a mut PointRows,
     scratch: &'a mut Scratch,
     normals: &'a mut [DVec3],
 }
@@ -156,7 +156,7 @@ impl WithSimd for Search<'_> {
         let mut units = [[0.0; ROW]; 4];
         for asked in asked.chunks(ROW * ROWS) {
             let count = asked.len().div_ceil(ROW);
-            for (asked, coordinates) in asked.chunks(ROW).zip(points.rows(count)) {
+            for (asked, coordinates) in asked.chunks(ROW).zip(points.replace(count)) {
                 let (mut columns, mut rows, mut ts) = (Row::default(), Row::default(), [f64::NAN; ROW]);
                 for (lane, Asked { place, t }) in asked.iter().enumerate() {
                     columns[lane] = (place % tile.width()) as f64;
@@ -166,7 +166,6 @@ impl WithSimd for Search<'_> {
                 tile.row(simd, &columns, &rows).at(simd, &ts, coordinates);
             }
             let outputs = points.evaluate(kernel, scratch, 4);
-            let (outputs, _) = outputs.as_chunks::<ROW>();
             for (number, asked) in asked.chunks(ROW).enumerate() {
                 let gradients = [1, 2, 3].map(|output| &outputs[output * count + number]);
                 put_units(simd, gradients, &mut units);

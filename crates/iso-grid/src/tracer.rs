@@ -9,6 +9,7 @@ use pulp::Arch;
 use crate::batch::{BoxBatch, FormBatch, PointBatch};
 use crate::certified::{Ahead, Entry, Expansion, Memory};
 use crate::normals::Asked;
+use crate::point_rows::PointRows;
 use crate::{Counters, OutcomeKind, Outcomes, Ray, Tile};
 
 /// A method of intersection, ready for its surface and region.
@@ -73,6 +74,8 @@ pub struct Workspace {
     pub(crate) asked: Vec<Asked>,
     /// Points for the kernels, and their values.
     pub(crate) points: PointBatch,
+    /// The same of rays side by side.
+    pub(crate) point_rows: PointRows,
     /// Points whose gradients are asked for beside their values.
     pub(crate) sloped_points: PointBatch,
     /// Boxes for the kernels, and their enclosures.

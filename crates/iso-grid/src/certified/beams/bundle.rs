@@ -7,9 +7,9 @@ use pulp::{Simd, WithSimd};
 use super::form::ROUNDING;
 use super::pixels::{STEPS, state};
 use super::sheaf::Start;
-use crate::batch::PointBatch;
 use crate::lanes::{Lanes, ROW, Row, parts};
 use crate::normals::put_units;
+use crate::point_rows::PointRows;
 use crate::raster::RayRow;
 use crate::{Hit, Span, Tile};
 
@@ -130,19 +130,16 @@ impl Bundle {
     /// Begins with its open rays, where they are likely to have a root; says whether there are any.
     #[inline(always)]
     fn begin<S: Simd>(&mut self, simd: S, tile: &Tile<'_>, (start, sight): (&Start<'_>, &Sight)) -> bool {
-        let (columns, rows) = (doubles(&self.columns), doubles(&self.rows));
-        let (mut t, width) = (Row::default(), tile.width() as u32);
+        let (columns, rows, width) = (doubles(&self.columns), doubles(&self.rows), tile.width() as u32);
         for lane in 0..ROW {
             self.places[lane] = self.rows[lane] * width + self.columns[lane];
-        }
-        for lane in 0..ROW {
-            t[lane] = start.at(columns[lane], rows[lane]);
         }
         let all = |number| Lanes::all(simd, number);
         let mut most_open = all(0.0);
         for part in 0..parts::<S>() {
             let at = |row: &Row| Lanes::of(simd, row, part);
-            at(&t).between(at(&self.reach[0]), at(&self.reach[1])).put(&mut self.t, part);
+            let t = start.at_all([at(&columns), at(&rows)]);
+            t.between(at(&self.reach[0]), at(&self.reach[1])).put(&mut self.t, part);
             most_open = at(&self.state).is_same(all(state::OPEN)).select(all(1.0), most_open);
         }
         let are_open = most_open.greatest() > 0.0;
@@ -280,11 +277,12 @@ impl Bundle {
     }
 }
 
-/// Whole numbers as doubles.
+/// Columns or rows as doubles.
 #[inline(always)]
 fn doubles(numbers: &[u32; ROW]) -> Row {
     let mut doubles = Row::default();
-    doubles.iter_mut().zip(numbers).for_each(|(double, number)| *double = f64::from(*number));
+    // As signed ones, for which processors have an instruction.
+    doubles.iter_mut().zip(numbers).for_each(|(double, number)| *double = f64::from(*number as i32));
     doubles
 }
 
@@ -296,7 +294,7 @@ pub(super) struct Pursuit<'a> {
     pub(super) sight: &'a Sight,
     pub(super) slopes: &'a dyn BatchKernel,
     pub(super) last: Last<'a>,
-    pub(super) points: &'a mut PointBatch,
+    pub(super) points: &'a mut PointRows,
     pub(super) scratch: &'a mut Scratch,
 }
 
@@ -340,17 +338,22 @@ impl WithSimd for Pursuit<'_> {
             if count == 0 {
                 break;
             }
-            for (coordinates, number) in points.rows(count).zip(&open) {
+            for (coordinates, number) in points.replace(count).zip(&open) {
                 let Bundle { rays, t, .. } = &bundles[*number];
                 rays.at(simd, t, coordinates);
             }
-            let found = match (need, &last) {
+            let rows = match (need, &last) {
                 (Need::Slopes, _) => {
-                    // Those of parallel rays are there since the first time.
-                    let put = if is_first || tile.direction().is_none() { count } else { 0 };
-                    for (directions, number) in points.rows_of_directions(count).zip(&open[..put]) {
-                        for (to, from) in directions.into_iter().zip(&bundles[*number].rays.directions) {
-                            *to = *from;
+                    match tile.direction() {
+                        Some(direction) => points.aim(direction),
+                        None => {
+                            for (directions, number) in points.directions().zip(&open) {
+                                for (to, from) in
+                                    directions.into_iter().zip(&bundles[*number].rays.directions)
+                                {
+                                    *to = *from;
+                                }
+                            }
                         }
                     }
                     points.slopes(slopes, scratch)
@@ -359,7 +362,6 @@ impl WithSimd for Pursuit<'_> {
                 (_, Last::Gradient(kernel, _)) => points.evaluate(*kernel, scratch, 4),
             };
             *(if need == Need::Slopes { &mut taken.slopes } else { &mut taken.last }) += count * ROW;
-            let (rows, _) = found.as_chunks();
             let (mut kept, mut far) = (0, 0);
             for place in 0..count {
                 let number = open[place];

@@ -165,7 +165,7 @@ impl Subdivision<'_> {
     /// Follows the rays of no more than [`AT_ONCE`](super::bundle::AT_ONCE) bundles.
     fn pursue_bundles(&mut self, bundles: &mut [Bundle], part: &Part, (start, sight): (&Start<'_>, &Sight)) {
         let kernels = part.kernels;
-        let Workspace { arch, points, scratch, counters, .. } = &mut *self.workspace;
+        let Workspace { arch, point_rows, scratch, counters, .. } = &mut *self.workspace;
         let of_part = &self.kernels[kernels as usize];
         let kernel_of_last = if self.normals.is_some() { Kernel::Gradients } else { Kernel::Values };
         let kernel = of_part.over_points(kernel_of_last);
@@ -174,8 +174,8 @@ impl Subdivision<'_> {
             None => Last::Value(kernel),
         };
         let slopes = of_part.over_points(Kernel::Slopes);
-        let taken =
-            arch.dispatch(Pursuit { tile: &self.tile, start, bundles, sight, slopes, last, points, scratch });
+        let (tile, points) = (&self.tile, point_rows);
+        let taken = arch.dispatch(Pursuit { tile, start, bundles, sight, slopes, last, points, scratch });
         counters.trace_evaluations += (taken.slopes + taken.last) as u64;
         if self.normals.is_some() {
             counters.gradient_evaluations += taken.last as u64;

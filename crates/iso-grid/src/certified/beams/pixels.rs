@@ -9,8 +9,8 @@ use super::course::{Course, ways};
 use super::form::ROUNDING;
 use super::packet::Packet;
 use super::subdivision::Subdivision;
-use crate::batch::PointBatch;
 use crate::lanes::{Lanes, Mask, Row, parts};
+use crate::point_rows::PointRows;
 use crate::raster::RayRow;
 use crate::{Hit, Kernel, Span, Workspace};
 
@@ -222,7 +222,7 @@ struct Approach<'a> {
     pixels: &'a mut [Pixels],
     bow: &'a Bow,
     kernel: &'a dyn BatchKernel,
-    points: &'a mut PointBatch,
+    points: &'a mut PointRows,
     scratch: &'a mut Scratch,
 }
 
@@ -245,11 +245,11 @@ impl WithSimd for Approach<'_> {
             if count == 0 {
                 break;
             }
-            for (coordinates, number) in points.rows(count).zip(&open) {
+            for (coordinates, number) in points.replace(count).zip(&open) {
                 let Pixels { rays, t, .. } = &pixels[*number];
                 rays.at(simd, t, coordinates);
             }
-            let (values, _) = points.evaluate(kernel, scratch, 1).as_chunks();
+            let values = points.evaluate(kernel, scratch, 1);
             taken += values.as_flattened().len();
             let mut kept = 0;
             for (place, values) in values.iter().enumerate() {
@@ -268,14 +268,14 @@ impl WithSimd for Approach<'_> {
 impl Subdivision<'_> {
     /// Goes on with each ray to its root in a part of these kernels. Those that are still open in the end are lost.
     pub(super) fn pursue(&mut self, pixels: &mut [Pixels], kernels: u32, bow: &Bow) {
-        let Workspace { arch, points, scratch, counters, .. } = &mut *self.workspace;
+        let Workspace { arch, point_rows, scratch, counters, .. } = &mut *self.workspace;
         if !pixels.iter().any(Pixels::is_any_open) {
             return;
         }
         let of_part = &self.kernels[kernels as usize];
         let kernel = of_part.over_points(Kernel::Values);
         for pixels in pixels.chunks_mut(AT_ONCE) {
-            let taken = arch.dispatch(Approach { pixels, bow, kernel, points, scratch });
+            let taken = arch.dispatch(Approach { pixels, bow, kernel, points: point_rows, scratch });
             counters.trace_evaluations += taken as u64;
             counters.operations += of_part.charge(Kernel::Values, taken);
         }

@@ -2,11 +2,13 @@
 
 use std::ops::Range;
 
+use pulp::Simd;
+
 use super::bundle::{AT_ONCE, Bundle};
 use super::form::Model;
 use super::pixels::state;
 use crate::Span;
-use crate::lanes::ROW;
+use crate::lanes::{Lanes, ROW};
 
 /// How far apart roots of neighbours must be, relative to where they are, so that roundings are much less.
 const DISTINCT: f64 = 1e-9;
@@ -39,6 +41,15 @@ impl<'a> Start<'a> {
     #[inline(always)]
     pub(super) fn at(&self, column: f64, row: f64) -> f64 {
         self.model.at(column - self.middle.0, row - self.middle.1)
+    }
+
+    /// The same for rays side by side, to the same bits.
+    #[inline(always)]
+    pub(super) fn at_all<S: Simd>(&self, [columns, rows]: [Lanes<S>; 2]) -> Lanes<S> {
+        let Model { t, by_column, by_row, .. } = *self.model;
+        let all = |number| columns.all_be(number);
+        let (across, along) = (columns - all(self.middle.0), rows - all(self.middle.1));
+        all(t) + (across * all(by_column) + along * all(by_row))
     }
 
     /// How far from there it may be.

@@ -61,7 +61,7 @@ fn ends_on_a_sphere(with_normals: bool, run: impl Fn(Pursuit<'_>) -> Taken) -> E
         .map(|program| Interpreter.batch(&program.simplified()).unwrap());
     let mut normals = vec![DVec3::NAN; tile.len()];
     let last = if with_normals { Last::Gradient(&*gradients, &mut normals) } else { Last::Value(&*values) };
-    let (mut points, mut scratch) = (PointBatch::default(), Scratch::default());
+    let (mut points, mut scratch) = (PointRows::default(), Scratch::default());
     let taken = run(Pursuit {
         tile: &tile,
         start: &start,
@@ -231,7 +231,7 @@ fn the_last_look_may_be_the_first() {
             sight: &sight,
             slopes: &*slopes,
             last: Last::Value(&*values),
-            points: &mut PointBatch::default(),
+            points: &mut PointRows::default(),
             scratch: &mut Scratch::default(),
         }
         .with_simd(Scalar::new());

@@ -1,0 +1,82 @@
+//! Points of rays that are followed side by side, gathered for one call of a kernel.
+
+use glam::DVec3;
+use iso_expr::{BatchKernel, Scratch};
+
+use crate::lanes::{ROW, Row};
+
+/// Rows of points coordinate by coordinate, and room for what a kernel says of them.
+///
+/// Memory is kept, and what stands in it, for to fill it again would take as long as many a kernel.
+#[derive(Debug, Default)]
+pub(crate) struct PointRows {
+    /// How many rows there are; more of them may be in memory.
+    count: usize,
+    coordinates: [Vec<Row>; 3],
+    /// Of the ray at each point, for slopes.
+    directions: [Vec<Row>; 3],
+    /// What all that stands in `directions` is, if all of it is the same.
+    common: Option<DVec3>,
+    values: Vec<Row>,
+}
+
+impl PointRows {
+    /// So many rows of points in place of all others, coordinate by coordinate, to be written to.
+    pub(crate) fn replace(&mut self, count: usize) -> impl Iterator<Item = [&mut Row; 3]> {
+        self.count = count;
+        let [x, y, z] = self.coordinates.each_mut().map(|rows| room(rows, count).iter_mut());
+        x.zip(y).zip(z).map(|((x, y), z)| [x, y, z])
+    }
+
+    /// The directions of the rays, to be written to.
+    pub(crate) fn directions(&mut self) -> impl Iterator<Item = [&mut Row; 3]> {
+        self.common = None;
+        let [x, y, z] = self.directions.each_mut().map(|rows| room(rows, self.count).iter_mut());
+        x.zip(y).zip(z).map(|((x, y), z)| [x, y, z])
+    }
+
+    /// Makes this the direction of all rays.
+    pub(crate) fn aim(&mut self, direction: DVec3) {
+        if self.common == Some(direction) && self.directions[0].len() >= self.count {
+            return;
+        }
+        for (rows, component) in self.directions.iter_mut().zip(direction.to_array()) {
+            room(rows, self.count);
+            rows.fill([component; ROW]);
+        }
+        self.common = Some(direction);
+    }
+
+    /// All `outputs` of the kernel at all points: those of row `i` of output `k` stand in row `k·count + i`.
+    pub(crate) fn evaluate(
+        &mut self,
+        kernel: &dyn BatchKernel,
+        scratch: &mut Scratch,
+        outputs: usize,
+    ) -> &[Row] {
+        let [x, y, z] = first(&self.coordinates, self.count);
+        let values = room(&mut self.values, outputs * self.count);
+        kernel.evaluate(scratch, &[x, y, z], values.as_flattened_mut());
+        values
+    }
+
+    /// F and its slope along the directions at all points, laid out in the same way.
+    pub(crate) fn slopes(&mut self, kernel: &dyn BatchKernel, scratch: &mut Scratch) -> &[Row] {
+        let [x, y, z] = first(&self.coordinates, self.count);
+        let [dx, dy, dz] = first(&self.directions, self.count);
+        let values = room(&mut self.values, 2 * self.count);
+        kernel.evaluate(scratch, &[x, y, z, dx, dy, dz], values.as_flattened_mut());
+        values
+    }
+}
+
+/// The numbers of so many rows, coordinate by coordinate.
+fn first(vectors: &[Vec<Row>; 3], count: usize) -> [&[f64]; 3] {
+    vectors.each_ref().map(|rows| rows[..count].as_flattened())
+}
+
+/// So many rows, for which memory is taken if needed.
+fn room(rows: &mut Vec<Row>, count: usize) -> &mut [Row] {
+    rows.resize(count.max(rows.len()), Row::default());
+    &mut rows[..count]
+}
