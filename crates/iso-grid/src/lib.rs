@@ -40,4 +40,4 @@ pub use ray::{Ray, Span};
 pub use region::{Region, RegionError};
 pub use stop::Stop;
 pub use surface::Surface;
-pub use tracer::{Tracer, Workspace};
+pub use tracer::{Traced, Tracer, Workspace};

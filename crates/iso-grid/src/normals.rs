@@ -124,17 +124,17 @@ fn unanswered(asked: &[Asked], outcomes: &Outcomes, normals: &[DVec3]) -> impl I
     })
 }
 
-/// Puts the normals in their places that are asked for along the rays of a tile.
+/// Puts the normals in their places that are asked for along the rays of a tile; says whether there is each of them.
 pub(crate) fn answer(
     kernel: &dyn BatchKernel,
     workspace: &mut Workspace,
     tile: Tile<'_>,
     asked: &[Asked],
     normals: &mut [DVec3],
-) {
+) -> bool {
     let Workspace { arch, scratch, counters, point_rows, .. } = workspace;
     counters.gradient_evaluations += asked.len() as u64;
-    arch.dispatch(Search { kernel, tile, asked, points: point_rows, scratch, normals });
+    arch.dispatch(Search { kernel, tile, asked, points: point_rows, scratch, normals })
 }
 
 /// The search for the normals of points on the rays of a tile.
@@ -148,12 +148,13 @@ struct Search<'a> {
 }
 
 impl WithSimd for Search<'_> {
-    type Output = ();
+    /// Whether there is each of them.
+    type Output = bool;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
         let Self { kernel, tile, asked, points, scratch, normals } = self;
-        let mut units = [[0.0; ROW]; 4];
+        let (mut units, mut is_each_there) = ([[0.0; ROW]; 4], true);
         for asked in asked.chunks(ROW * ROWS) {
             let count = asked.len().div_ceil(ROW);
             for (asked, coordinates) in asked.chunks(ROW).zip(points.replace(count)) {
@@ -171,11 +172,17 @@ impl WithSimd for Search<'_> {
                 put_units(simd, gradients, &mut units);
                 for (lane, Asked { place, .. }) in asked.iter().enumerate() {
                     let [x, y, z, is_plain] = units.each_ref().map(|row| row[lane]);
-                    let found = || unit_of(DVec3::from_array(gradients.map(|row| row[lane])));
-                    normals[*place] = if is_plain > 0.0 { DVec3::new(x, y, z) } else { found() };
+                    normals[*place] = if is_plain > 0.0 {
+                        DVec3::new(x, y, z)
+                    } else {
+                        let found = unit_of(DVec3::from_array(gradients.map(|row| row[lane])));
+                        is_each_there &= !found.is_nan();
+                        found
+                    };
                 }
             }
         }
+        is_each_there
     }
 }
 

@@ -12,6 +12,17 @@ use crate::normals::Asked;
 use crate::point_rows::PointRows;
 use crate::{Counters, OutcomeKind, Outcomes, Ray, Tile};
 
+/// What came of the rays of a tile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Traced {
+    /// All of them end in misses.
+    Nothing,
+    /// Some do not.
+    Outcomes,
+    /// Some do not, and each hit and touch has its normal.
+    OutcomesAndNormals,
+}
+
 /// A method of intersection, ready for its surface and region.
 pub trait Tracer: Send + Sync {
     /// Says for each ray how the search along it ended, whatever stood in `outcomes` before.
@@ -21,7 +32,7 @@ pub trait Tracer: Send + Sync {
     /// When the surface's [`Stop`](crate::Stop) is requested, this returns soon, and no outcome means anything.
     fn trace(&self, workspace: &mut Workspace, rays: &[Ray], outcomes: &mut Outcomes);
 
-    /// The same for a tile, row by row; says whether any ray ends elsewhere than in a miss.
+    /// The same for a tile, row by row; says what came of it.
     ///
     /// A method may share work between the rays of a tile. What it says of each is as true as if it were traced alone, but
     /// where in its bracket a root is placed, and how wide the bracket is, may depend on the other rays of the tile.
@@ -34,7 +45,7 @@ pub trait Tracer: Send + Sync {
         tile: Tile<'_>,
         outcomes: &mut Outcomes,
         normals: Option<&mut [DVec3]>,
-    ) -> bool {
+    ) -> Traced {
         let _ = normals;
         trace_each(self, workspace, tile, outcomes)
     }
@@ -50,15 +61,16 @@ pub trait Tracer: Send + Sync {
     fn preprocessing(&self) -> Counters;
 }
 
-/// Traces the rays of a tile each for its own; says whether any ends elsewhere than in a miss.
+/// Traces the rays of a tile each for its own; says what came of it.
 pub(crate) fn trace_each<T: Tracer + ?Sized>(
     tracer: &T,
     workspace: &mut Workspace,
     tile: Tile<'_>,
     outcomes: &mut Outcomes,
-) -> bool {
+) -> Traced {
     tracer.trace(workspace, &tile.rays().collect::<Vec<_>>(), outcomes);
-    outcomes.kinds().iter().any(|kind| *kind != OutcomeKind::Miss)
+    let are_missed = outcomes.kinds().iter().all(|kind| *kind == OutcomeKind::Miss);
+    if are_missed { Traced::Nothing } else { Traced::Outcomes }
 }
 
 /// A thread's working memory and counts, reused from call to call. It carries no results but its counters.

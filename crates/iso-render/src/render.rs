@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use glam::{DVec3, Vec3};
 use iso_expr::CompileError;
-use iso_grid::{Counters, OutcomeKind, Outcomes, Surface, Tracer, Workspace};
+use iso_grid::{Counters, OutcomeKind, Outcomes, Surface, Traced, Tracer, Workspace};
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -148,16 +148,18 @@ impl Tile {
         }
         normals.resize(if are_normals_wanted { rays.len() } else { 0 }, DVec3::NAN);
         let on_the_way = are_normals_wanted.then_some(&mut normals[..]);
-        let is_met = scene.tracer.trace_tile(workspace, rays, outcomes, on_the_way);
+        let traced = scene.tracer.trace_tile(workspace, rays, outcomes, on_the_way);
         if stop.is_requested() {
             return Ok(());
         }
         self.trace = watch.lap();
-        (self.content, self.counts) = match is_met {
-            true => (Content::Found, StatusCounts::of(outcomes.kinds())),
-            false => (Content::Nothing, StatusCounts { miss: rays.len() as u64, ..StatusCounts::default() }),
+        (self.content, self.counts) = match traced {
+            Traced::Nothing => {
+                (Content::Nothing, StatusCounts { miss: rays.len() as u64, ..StatusCounts::default() })
+            }
+            _ => (Content::Found, StatusCounts::of(outcomes.kinds())),
         };
-        if are_normals_wanted && is_met {
+        if are_normals_wanted && traced == Traced::Outcomes {
             iso_grid::normals(
                 scene.plan.followed(scene.surface),
                 Some(scene.tracer),

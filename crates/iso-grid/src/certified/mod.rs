@@ -21,7 +21,7 @@ use glam::DVec3;
 use iso_expr::{BatchKernel, CompileError};
 
 use crate::tracer::trace_each;
-use crate::{Counters, Outcome, Outcomes, Ray, Region, Span, Stop, Surface, Tile, Tracer, Workspace};
+use crate::{Counters, Outcome, Outcomes, Ray, Region, Span, Stop, Surface, Tile, Traced, Tracer, Workspace};
 pub(crate) use beams::Memory;
 use beams::Subdivision;
 use cells::Cell;
@@ -175,7 +175,7 @@ impl Tracer for Certified {
         tile: Tile<'_>,
         outcomes: &mut Outcomes,
         normals: Option<&mut [DVec3]>,
-    ) -> bool {
+    ) -> Traced {
         assert!(normals.as_ref().is_none_or(|normals| normals.len() == tile.len()));
         match Subdivision::new(self, workspace, tile, (outcomes, normals)) {
             Some(subdivision) => subdivision.run(),

@@ -8,7 +8,7 @@ use super::form::ROUNDING;
 use super::pixels::{STEPS, state};
 use super::sheaf::Start;
 use crate::lanes::{Lanes, ROW, Row, parts};
-use crate::normals::put_units;
+use crate::normals::{Asked, put_units};
 use crate::point_rows::PointRows;
 use crate::raster::RayRow;
 use crate::{Hit, Span, Tile};
@@ -35,6 +35,8 @@ pub(crate) struct Bundle {
     /// How far t is from where F was taken at the last conclusion.
     moved: Row,
     pub(super) state: Row,
+    /// Whether there are rays with a root whose normals were not found on the way, where they are wanted.
+    pub(super) lacks_normals: bool,
 }
 
 /// A ray is near its root where another step is expected to leave it known to within no more than so many times the tolerance.
@@ -113,6 +115,12 @@ impl Bundle {
     pub(super) fn hits(&self) -> impl Iterator<Item = (usize, Hit)> {
         self.in_state(|state| state == state::HIT)
             .map(|(lane, bracket)| (self.places[lane] as usize, Hit { t: self.t[lane], bracket }))
+    }
+
+    /// The rays that have a root and no normal among these, where it is wanted, and where.
+    pub(super) fn without_normals(&self, normals: &[DVec3]) -> impl Iterator<Item = Asked> {
+        let is_without = |(place, _): &(usize, Hit)| normals[*place].x.is_nan();
+        self.hits().filter(is_without).map(|(place, Hit { t, .. })| Asked { place, t })
     }
 
     /// The rays that may have a root, which is to be looked for otherwise, and where.
@@ -259,18 +267,26 @@ impl Bundle {
     /// Puts the normals of rays in their places that meet the surface within `distance` of where these gradients were taken: their directions,
     /// where squares neither overflow nor underflow.
     #[inline(always)]
-    fn put_normals<S: Simd>(&self, simd: S, (gradients, distance): ([&Row; 3], f64), normals: &mut [DVec3]) {
+    fn put_normals<S: Simd>(
+        &mut self,
+        simd: S,
+        (gradients, distance): ([&Row; 3], f64),
+        normals: &mut [DVec3],
+    ) {
         let mut units = [[0.0; ROW]; 4];
         put_units(simd, gradients, &mut units);
         let [x, y, z, are_plain] = &units;
         let (all, mut is_there) = (|number| Lanes::all(simd, number), Row::default());
+        let mut most_lacking = all(0.0);
         for part in 0..parts::<S>() {
             let at = |row: &Row| Lanes::of(simd, row, part);
-            let is_near =
-                at(&self.moved).is_at_most(all(distance)) & at(&self.state).is_same(all(state::HIT));
-            let there = is_near.select(at(are_plain), all(0.0));
+            let is_near = at(&self.moved).is_at_most(all(distance));
+            let is_hit = at(&self.state).is_same(all(state::HIT));
+            let there = (is_near & is_hit).select(at(are_plain), all(0.0));
             there.put(&mut is_there, part);
+            most_lacking = is_hit.select(most_lacking.at_least(all(1.0) - there), most_lacking);
         }
+        self.lacks_normals = most_lacking.greatest() > 0.0;
         for lane in (0..ROW).filter(|lane| is_there[*lane] > 0.0) {
             normals[self.places[lane] as usize] = DVec3::new(x[lane], y[lane], z[lane]);
         }

@@ -146,7 +146,7 @@ impl Sheaf {
         let (columns, rows) = (self.columns.as_chunks().0, self.rows.as_chunks().0);
         for ((bundle, columns), rows) in bundles.iter_mut().zip(columns).zip(rows) {
             (bundle.columns, bundle.rows) = (*columns, *rows);
-            bundle.state = [state::OPEN; ROW];
+            (bundle.state, bundle.lacks_normals) = ([state::OPEN; ROW], false);
             bundle.wanted = [[wanted.start; ROW], [wanted.end; ROW]];
             bundle.reach = [[reach.start; ROW], [reach.end; ROW]];
         }

@@ -27,7 +27,7 @@ use crate::certified::line::bounds_along;
 use crate::lanes::{ROW, Row};
 use crate::normals::{Asked, answer};
 use crate::raster::Rays;
-use crate::{Hit, Kernel, Outcome, Outcomes, Span, Tile, Workspace};
+use crate::{Hit, Kernel, Outcome, Outcomes, Span, Tile, Traced, Workspace};
 
 /// Into how many stretches a beam is cut at most.
 const SLICES: usize = BATCH;
@@ -128,6 +128,8 @@ pub(in crate::certified) struct Subdivision<'a> {
     /// Those of rays that were found on the way, if they are wanted.
     pub(super) normals: Option<&'a mut [DVec3]>,
     pub(super) memory: Memory,
+    /// Whether some hits or touches have no normals although they are wanted.
+    pub(super) lacks_normals: bool,
     /// Kernels by number. The first hold everywhere.
     pub(super) kernels: Vec<Arc<Kernels>>,
     /// What is known of how each of them is made of others.
@@ -184,6 +186,7 @@ impl<'a> Subdivision<'a> {
             tile,
             outcomes,
             normals,
+            lacks_normals: false,
             memory,
             kernels,
             faces,
@@ -192,8 +195,8 @@ impl<'a> Subdivision<'a> {
         })
     }
 
-    /// Says of every ray how its search ends, and whether any ends elsewhere than in a miss.
-    pub(in crate::certified) fn run(mut self) -> bool {
+    /// Says of every ray how its search ends, and what came of all.
+    pub(in crate::certified) fn run(mut self) -> Traced {
         if let Some(stretch) = self.passage() {
             self.least_overlap = LEAST_OVERLAP * stretch.end;
             let form = Form::unknown(stretch);
@@ -220,9 +223,13 @@ impl<'a> Subdivision<'a> {
             }
         }
         self.put_normals();
-        let is_missed = self.memory.open.iter().fold(true, |all, is_open| all & is_open);
+        let are_missed = self.memory.open.iter().fold(true, |all, is_open| all & is_open);
         self.workspace.tile = self.memory;
-        !is_missed
+        match are_missed {
+            true => Traced::Nothing,
+            false if self.normals.is_none() || self.lacks_normals => Traced::Outcomes,
+            false => Traced::OutcomesAndNormals,
+        }
     }
 
     /// A stretch that holds all of the tile's rays inside the region; `None` when they miss it.
@@ -394,12 +401,14 @@ impl<'a> Subdivision<'a> {
         for (number, asked) in self.memory.met.by_function() {
             let kernels = &self.kernels[number as usize];
             self.workspace.counters.operations += kernels.charge(Kernel::Gradients, asked.len());
-            answer(kernels.over_points(Kernel::Gradients), self.workspace, self.tile, asked, normals);
+            let kernel = kernels.over_points(Kernel::Gradients);
+            self.lacks_normals |= !answer(kernel, self.workspace, self.tile, asked, normals);
         }
     }
 
     /// Notes how the search along a ray ends.
     pub(super) fn end(&mut self, place: usize, outcome: Outcome) {
+        self.lacks_normals |= matches!(outcome, Outcome::Touch(_));
         self.outcomes.set(place, outcome);
         self.memory.open[place] = false;
     }

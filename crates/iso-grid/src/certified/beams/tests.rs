@@ -63,7 +63,7 @@ fn rows_may_be_longer_than_a_sheaf() {
     };
     let tile = Tile::of(&raster, [-0.5 * width as f64, 0.0], width, 3);
     let (mut workspace, mut outcomes) = (Workspace::default(), Outcomes::default());
-    assert!(certified.trace_tile(&mut workspace, tile, &mut outcomes, None));
+    assert_eq!(certified.trace_tile(&mut workspace, tile, &mut outcomes, None), Traced::Outcomes);
     for (ray, outcome) in tile.rays().zip(outcomes.iter()) {
         let Outcome::Hit(hit) = outcome else { panic!("{outcome:?}") };
         assert!((4.0 - hit.t - ray.origin.x / 10.0 - 0.05).abs() < 1e-11, "{hit:?}");
