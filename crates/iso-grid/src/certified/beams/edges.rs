@@ -8,7 +8,7 @@ use pulp::{Simd, WithSimd};
 
 use super::faces::{Face, Sought};
 use super::grazing::DOUBTFUL;
-use super::made::{Combinations, MOST, Made};
+use super::made::{Combination, Combinations, MOST, Made};
 use super::packet::{OpenRays, Packet, Signed, for_all};
 use super::pixels::{End, Pixels};
 use super::signs::{Event, Root, Roots, Signs, count_together, hull};
@@ -22,16 +22,17 @@ use crate::{Hit, Outcome, Span, Tile};
 const CLOSE: f64 = 64.0 * f64::EPSILON;
 
 /// A ray of a part on which F may be zero, and what is known of each face along it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Meeting {
-    /// Which ray of the tile.
+    /// Which ray of the tile, and its column and row there.
     place: usize,
+    position: (usize, usize),
     /// Before it F is not zero, and behind it nothing is asked for, since F has been zero there.
     asked: Span,
     /// The number of the face that is asked for first.
     likely: f64,
-    /// The sign of each face at first, 0 before it is asked for.
-    signs: [f64; MOST],
+    /// The sign of each face at first, not known before it is asked for.
+    signs: Combination,
     /// Whether each face could be told that was asked for.
     is_clear: bool,
     roots: Roots,
@@ -78,7 +79,7 @@ impl Signed for Body<'_> {
                 face.signs(at(middle), at(radii), at(&asked)).put(signs, part);
             }
         }
-        self.made.signs(simd, &of_faces)
+        self.made.of_rows(simd, &of_faces).map(|signs| self.made.sign(signs))
     }
 }
 
@@ -94,18 +95,19 @@ impl WithSimd for Survey<'_> {
         let mut doubtful = 0.0;
         for packet in packets {
             let outlook = body.outlook(simd, packet, rays.area);
-            let of_body = body.made.signs(simd, &outlook.signs);
-            for (lane, place) in packet.places().enumerate() {
-                if of_body[lane] != 0.0 {
+            let of_faces = body.made.of_rows(simd, &outlook.signs);
+            for (lane, (place, position)) in packet.places().zip(packet.positions()).enumerate() {
+                let signs = of_faces[lane];
+                if body.made.sign(signs) != 0.0 {
                     continue;
                 }
-                let signs = outlook.signs.map(|signs| signs[lane]);
                 doubtful += 1.0 - outlook.is_likely[lane];
-                if let Some(face) = body.made.face_alone(&signs) {
+                if let Some(face) = body.made.face_alone(signs) {
                     packet.put_into(&mut alone[face], lane);
                 } else {
                     meetings.push(Meeting {
                         place,
+                        position,
                         asked: body.asked,
                         likely: outlook.likely[lane],
                         signs,
@@ -204,13 +206,11 @@ impl WithSimd for Ask<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { rays, face, sought, meetings, asked, pixels } = self;
-        let (_, tile) = rays;
         pixels.clear();
         for some in asked.chunks(ROW) {
             let (mut packet, mut wanted) = (Packet::default(), [[0.0; ROW]; 2]);
             for (lane, (number, Span { start, end })) in some.iter().enumerate() {
-                let place = meetings[*number].place;
-                packet.push(*number, (place % tile.width(), place / tile.width()));
+                packet.push(*number, meetings[*number].position);
                 (wanted[0][lane], wanted[1][lane]) = (*start, *end);
             }
             pixels.push(face.met_by(simd, rays, (packet, wanted), sought));
@@ -239,7 +239,7 @@ impl Subdivision<'_> {
             }
             for meeting in &meetings {
                 if !meeting.is_clear {
-                    self.search_one(self.position(meeting.place), part.stretch, None);
+                    self.search_one(meeting.position, part.stretch, None);
                 } else if !meeting.roots.in_order().is_empty() {
                     self.end_at_faces(part, (faces, made), meeting);
                 }
@@ -296,7 +296,7 @@ impl Subdivision<'_> {
         let mut asked = std::mem::take(&mut self.memory.asked);
         let mut pixels = std::mem::take(&mut self.memory.pixels);
         let is_asked = |meeting: &Meeting| {
-            meeting.signs[number] == 0.0 && (meeting.likely == number as f64) == (sought == Sought::Likely)
+            meeting.signs.sign(number) == 0 && (meeting.likely == number as f64) == (sought == Sought::Likely)
         };
         asked.clear();
         let each = meetings.iter().enumerate().filter(|(_, meeting)| is_asked(meeting));
@@ -306,10 +306,10 @@ impl Subdivision<'_> {
         for (place, end) in pixels.iter().flat_map(Pixels::ends) {
             let meeting = &mut meetings[place];
             match end {
-                End::Free(sign) => meeting.signs[number] = sign,
+                End::Free(sign) => meeting.signs = meeting.signs.with(number, sign as i8),
                 End::Lost(_) => meeting.is_clear = false,
                 End::Hit(hit, sign) => {
-                    meeting.signs[number] = sign;
+                    meeting.signs = meeting.signs.with(number, sign as i8);
                     meeting.narrow(of, (hit.bracket, sign, tolerance));
                     meeting.roots.add(Root { face: number, hit });
                     // Behind a root at which a part of a union falls, F is negative.
@@ -354,7 +354,7 @@ impl Subdivision<'_> {
         &mut self,
         part: &Part,
         (faces, made): (&[Face], &Combinations),
-        Meeting { place, asked, signs, roots, .. }: &Meeting,
+        Meeting { place, position, asked, signs, roots, .. }: &Meeting,
     ) {
         let (place, mut roots, mut known_to) = (*place, roots.in_order(), asked.end);
         let mut are_monotone = [true; MOST];
@@ -375,17 +375,17 @@ impl Subdivision<'_> {
                     let t = bracket.start + 0.5 * (bracket.end - bracket.start);
                     return self.end(place, Outcome::Touch(Hit { t, bracket }));
                 }
-                Event::Contact => self.search_one(self.position(place), bracket, None),
+                Event::Contact => self.search_one(*position, bracket, None),
                 Event::Unclear => {
                     roots = &[];
                     known_to = bracket.end;
-                    self.search_one(self.position(place), bracket, None);
+                    self.search_one(*position, bracket, None);
                 }
             }
         }
         let rest = Span { start: known_to, end: part.stretch.end };
         if self.memory.open[place] && rest.start < rest.end {
-            self.search_one(self.position(place), rest, None);
+            self.search_one(*position, rest, None);
         }
     }
 }

@@ -12,15 +12,26 @@ pub(super) const MOST: usize = 5;
 /// How many combinations of signs there are, of which each is negative, unknown or positive.
 const COMBINATIONS: usize = 3_usize.pow(MOST as u32);
 
+/// How far apart combinations stand in which a face has signs that are one apart.
+const STEPS: [i32; MOST] = {
+    let mut steps = [1; MOST];
+    let mut face = 1;
+    while face < MOST {
+        steps[face] = 3 * steps[face - 1];
+        face += 1;
+    }
+    steps
+};
+
 /// The sign of each face in all of them. Each stands at the place whose digits to the base of three are the signs of the faces, the first one's last,
 /// and one more.
-const OF_FACES: [[f64; COMBINATIONS]; MOST] = {
-    let mut signs = [[0.0; COMBINATIONS]; MOST];
+static OF_FACES: [[i8; COMBINATIONS]; MOST] = {
+    let mut signs = [[0; COMBINATIONS]; MOST];
     let mut place = 0;
     while place < COMBINATIONS {
         let (mut face, mut digits) = (0, place);
         while face < MOST {
-            signs[face][place] = (digits % 3) as f64 - 1.0;
+            signs[face][place] = (digits % 3) as i8 - 1;
             digits /= 3;
             face += 1;
         }
@@ -28,6 +39,36 @@ const OF_FACES: [[f64; COMBINATIONS]; MOST] = {
     }
     signs
 };
+
+/// The signs of some faces, by their place among all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Combination(u8);
+
+impl Combination {
+    /// The sign of a face: −1, 1, or 0 where it is not known.
+    #[inline]
+    pub(super) fn sign(self, face: usize) -> i8 {
+        OF_FACES[face][usize::from(self.0)]
+    }
+
+    /// The one in which a face has this sign.
+    #[inline]
+    pub(super) fn with(self, face: usize, sign: i8) -> Self {
+        Self((i32::from(self.0) + i32::from(sign - self.sign(face)) * STEPS[face]) as u8)
+    }
+
+    /// The one in which a face has the other sign.
+    #[inline]
+    pub(super) fn with_other(self, face: usize) -> Self {
+        self.with(face, -self.sign(face))
+    }
+
+    /// That of these signs of all faces.
+    #[cfg(test)]
+    pub(super) fn of(signs: &[f64]) -> Self {
+        Self(signs.iter().rev().fold(0, |place, sign| 3 * place + (sign + 1.0) as u8))
+    }
+}
 
 /// What F, or a function of which it is made, comes to on a part.
 pub(super) enum Made {
@@ -48,7 +89,7 @@ impl Made {
     fn signs(&self, count: usize) -> Vec<f64> {
         match self {
             Self::Signed(sign) => vec![*sign; count],
-            Self::Face(number) => OF_FACES[*number][..count].to_vec(),
+            Self::Face(number) => OF_FACES[*number][..count].iter().map(|sign| f64::from(*sign)).collect(),
             Self::Of(extreme, parts) => {
                 let mut signs = vec![-deciding(*extreme); count];
                 for part in parts {
@@ -63,8 +104,8 @@ impl Made {
             Self::Choice(by, sides) => {
                 let [below, above] = sides.each_ref().map(|side| side.signs(count));
                 let sign = |(by, (below, above))| match by {
-                    ..0.0 => below,
-                    0.0 if below != above => 0.0,
+                    -1 => below,
+                    0 if below != above => 0.0,
                     _ => above,
                 };
                 OF_FACES[*by].iter().copied().zip(below.into_iter().zip(above)).map(sign).collect()
@@ -139,16 +180,15 @@ impl Combinations {
 
     /// The sign of F where faces have these, 0 where that is not known, NaN where F is nothing.
     #[inline]
-    pub(super) fn sign(&self, of_faces: &[f64; MOST]) -> f64 {
-        let place = of_faces[..self.faces].iter().rev().fold(0.0, |place, sign| 3.0 * place + (sign + 1.0));
-        self.of[place as usize]
+    pub(super) fn sign(&self, of_faces: Combination) -> f64 {
+        self.of[usize::from(of_faces.0)]
     }
 
-    /// The same along rays side by side.
+    /// The combinations along rays side by side in which faces have these signs.
     #[inline(always)]
-    pub(super) fn signs<S: Simd>(&self, simd: S, of_faces: &[Row; MOST]) -> Row {
+    pub(super) fn of_rows<S: Simd>(&self, simd: S, of_faces: &[Row; MOST]) -> [Combination; ROW] {
         let all = |number| Lanes::all(simd, number);
-        let (mut places, mut signs) = ([0.0; ROW], [0.0; ROW]);
+        let mut places = [0.0; ROW];
         for part in 0..parts::<S>() {
             let mut place = all(0.0);
             for row in of_faces[..self.faces].iter().rev() {
@@ -156,39 +196,30 @@ impl Combinations {
             }
             place.put(&mut places, part);
         }
-        for (sign, place) in signs.iter_mut().zip(places) {
-            *sign = self.of[place as usize];
-        }
-        signs
+        places.map(|place| Combination(whole(place)))
     }
 
     /// The face whose sign is not known, if that is one alone, and F has its sign.
     #[inline]
-    pub(super) fn face_alone(&self, of_faces: &[f64; MOST]) -> Option<usize> {
-        let mut open = (0..self.faces).filter(|number| of_faces[*number] == 0.0);
+    pub(super) fn face_alone(&self, of_faces: Combination) -> Option<usize> {
+        let mut open = (0..self.faces).filter(|face| of_faces.sign(*face) == 0);
         let (face, None) = (open.next()?, open.next()) else { return None };
-        let with = |sign: f64| {
-            let mut signs = *of_faces;
-            signs[face] = sign;
-            self.sign(&signs)
-        };
-        (self.is_met(face) && with(-1.0) < 0.0 && with(1.0) > 0.0).then_some(face)
+        let with = |sign| self.sign(of_faces.with(face, sign));
+        (self.is_met(face) && with(-1) < 0.0 && with(1) > 0.0).then_some(face)
     }
 
     /// Whether F may be nothing where some of these faces have the other sign.
-    pub(super) fn may_be_nothing(&self, of_faces: &[f64; MOST], other: impl Iterator<Item = usize>) -> bool {
+    pub(super) fn may_be_nothing(&self, of_faces: Combination, other: impl Iterator<Item = usize>) -> bool {
         if !self.is_cut {
             return false;
         }
-        let mut all = vec![*of_faces];
+        let mut all = vec![of_faces];
         for face in other {
             for place in 0..all.len() {
-                let mut signs = all[place];
-                signs[face] = -signs[face];
-                all.push(signs);
+                all.push(all[place].with_other(face));
             }
         }
-        all.iter().any(|signs| self.sign(signs).is_nan())
+        all.into_iter().any(|signs| self.sign(signs).is_nan())
     }
 
     /// Whether F may be zero where a face is.
@@ -202,6 +233,13 @@ impl Combinations {
     }
 }
 
+/// A number that is whole and less than 256, from its bits: a cast has to care for all others, which takes longer.
+#[inline(always)]
+fn whole(number: f64) -> u8 {
+    const LARGE: f64 = (1u64 << 52) as f64;
+    (LARGE + number).to_bits() as u8
+}
+
 /// The sign that F has where any of its functions has it.
 pub(super) fn deciding(extreme: Extreme) -> f64 {
     match extreme {
@@ -210,15 +248,29 @@ pub(super) fn deciding(extreme: Extreme) -> f64 {
     }
 }
 
-/// The signs of the first faces, with nothing known of the others.
-#[cfg(test)]
-pub(super) fn first<const N: usize>(signs: [f64; N]) -> [f64; MOST] {
-    std::array::from_fn(|face| signs.get(face).copied().unwrap_or(0.0))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn of<const N: usize>(signs: [f64; N]) -> Combination {
+        Combination::of(&signs)
+    }
+
+    #[test]
+    fn combinations_tell_and_change_the_sign_of_each_face() {
+        for signs in [[-1.0, 1.0, 0.0, 0.0, 1.0], [0.0; MOST], [1.0; MOST], [-1.0; MOST]] {
+            let all = of(signs);
+            for face in 0..MOST {
+                assert_eq!(f64::from(all.sign(face)), signs[face]);
+                for sign in [-1, 0, 1] {
+                    let mut others = signs;
+                    others[face] = f64::from(sign);
+                    assert_eq!(all.with(face, sign), of(others));
+                    assert_eq!(all.with(face, sign).with_other(face), all.with(face, -sign));
+                }
+            }
+        }
+    }
 
     /// A limb of a union: min(by < 0 ? a : b, c).
     #[test]
@@ -229,10 +281,10 @@ mod tests {
         for a in [-1.0, 0.0, 1.0] {
             for b in [-1.0, 0.0, 1.0] {
                 for c in [-1.0, 0.0, 1.0] {
-                    assert_eq!(found.sign(&first([-1.0, a, b, c])), f64::min(a, c));
-                    assert_eq!(found.sign(&first([1.0, a, b, c])), f64::min(b, c));
+                    assert_eq!(found.sign(of([-1.0, a, b, c])), f64::min(a, c));
+                    assert_eq!(found.sign(of([1.0, a, b, c])), f64::min(b, c));
                     let either = if a == b { a } else { 0.0 };
-                    assert_eq!(found.sign(&first([0.0, a, b, c])), f64::min(either, c));
+                    assert_eq!(found.sign(of([0.0, a, b, c])), f64::min(either, c));
                 }
             }
         }
@@ -245,17 +297,17 @@ mod tests {
         let cut = Made::Of(Extreme::Greatest, vec![Made::Face(0), Made::Face(1)]);
         let made = Made::Of(Extreme::Least, vec![cut, Made::Face(2)]);
         let found = Combinations::new(&made, 3);
-        assert_eq!(found.face_alone(&first([0.0, -1.0, 1.0, 0.0])), Some(0));
-        assert_eq!(found.face_alone(&first([1.0, -1.0, 0.0, 0.0])), Some(2));
+        assert_eq!(found.face_alone(of([0.0, -1.0, 1.0])), Some(0));
+        assert_eq!(found.face_alone(of([1.0, -1.0, 0.0])), Some(2));
         // Behind the other side of the cut, and inside the other part, it decides nothing.
-        assert_eq!(found.face_alone(&first([0.0, 1.0, 1.0, 0.0])), None);
-        assert_eq!(found.face_alone(&first([0.0, -1.0, -1.0, 0.0])), None);
-        assert_eq!(found.face_alone(&first([0.0, 0.0, 1.0, 0.0])), None);
+        assert_eq!(found.face_alone(of([0.0, 1.0, 1.0])), None);
+        assert_eq!(found.face_alone(of([0.0, -1.0, -1.0])), None);
+        assert_eq!(found.face_alone(of([0.0, 0.0, 1.0])), None);
         // What decides between two sides is never met.
         let limb = Made::Choice(0, Box::new([Made::Face(1), Made::Face(2)]));
         let found = Combinations::new(&limb, 3);
-        assert_eq!(found.face_alone(&first([0.0, -1.0, 1.0, 0.0])), None);
-        assert_eq!(found.face_alone(&first([-1.0, 0.0, 1.0, 0.0])), Some(1));
+        assert_eq!(found.face_alone(of([0.0, -1.0, 1.0])), None);
+        assert_eq!(found.face_alone(of([-1.0, 0.0, 1.0])), Some(1));
     }
 
     /// A sphere where either of two margins is positive, the first of which is the sphere's own.
@@ -272,15 +324,15 @@ mod tests {
             ([-1.0, 0.0], 0.0),
             ([0.0, -1.0], 0.0),
         ] {
-            assert_eq!(found.sign(&first(signs)), expected, "{signs:?}");
+            assert_eq!(found.sign(of(signs)), expected, "{signs:?}");
         }
-        let nothing = first([-1.0, -1.0]);
-        assert!(found.sign(&nothing).is_nan() && found.may_be_nothing(&nothing, [].into_iter()));
-        assert!(found.may_be_nothing(&first([1.0, 1.0]), [0, 1].into_iter()));
-        assert!(!found.may_be_nothing(&first([1.0, 1.0]), [0].into_iter()));
+        let nothing = of([-1.0, -1.0]);
+        assert!(found.sign(nothing).is_nan() && found.may_be_nothing(nothing, [].into_iter()));
+        assert!(found.may_be_nothing(of([1.0, 1.0]), [0, 1].into_iter()));
+        assert!(!found.may_be_nothing(of([1.0, 1.0]), [0].into_iter()));
         assert!(found.is_met(0) && !found.is_met(1));
-        assert_eq!(found.face_alone(&first([0.0, 1.0])), Some(0));
-        assert_eq!(found.face_alone(&first([0.0, -1.0])), None);
+        assert_eq!(found.face_alone(of([0.0, 1.0])), Some(0));
+        assert_eq!(found.face_alone(of([0.0, -1.0])), None);
     }
 
     /// A corner is cut off a union: max(min(a, b, 1), c).
@@ -293,10 +345,10 @@ mod tests {
             for b in [-1.0, 0.0, 1.0] {
                 for c in [-1.0, 0.0, 1.0] {
                     let expected = f64::max(f64::min(a, b), c);
-                    assert_eq!(found.sign(&first([a, b, c])), expected, "{a}, {b}, {c}");
-                    let mut of_faces = first([a, b, c]).map(|sign| [sign; ROW]);
+                    assert_eq!(found.sign(of([a, b, c])), expected, "{a}, {b}, {c}");
+                    let mut of_faces = [a, b, c, 0.0, 0.0].map(|sign| [sign; ROW]);
                     of_faces[2][3] = 1.0;
-                    let signs = found.signs(pulp::Scalar::new(), &of_faces);
+                    let signs = found.of_rows(pulp::Scalar::new(), &of_faces).map(|signs| found.sign(signs));
                     let side_by_side = |lane: usize| if lane == 3 { 1.0 } else { expected };
                     assert_eq!(signs, std::array::from_fn(side_by_side), "{a}, {b}, {c}");
                 }

@@ -9,17 +9,28 @@ pub(crate) struct Met {
     functions: Vec<(usize, u32)>,
     /// The hits of each. There may be more lists, kept for their memory.
     hits: Vec<Vec<Asked>>,
+    /// The place of the function of kernels among those, by their number, where it was found before.
+    places: Vec<Option<u32>>,
 }
 
 impl Met {
     pub(super) fn clear(&mut self) {
         self.functions.clear();
+        self.places.clear();
     }
 
-    /// Notes a hit of a function of this identity, which has kernels of this number.
-    pub(super) fn push(&mut self, (function, kernels): (usize, u32), asked: Asked) {
-        // Those that are met come late in the list, for neighbours meet the same.
-        let known = self.functions.iter().rposition(|(known, _)| *known == function);
+    /// Notes a hit of a function that has kernels of this number, by its identity.
+    #[inline]
+    pub(super) fn push(&mut self, kernels: u32, function: impl FnOnce() -> usize, asked: Asked) {
+        let known = self.places.get(kernels as usize).copied().flatten();
+        let place = known.unwrap_or_else(|| self.place(kernels, function()));
+        self.hits[place as usize].push(asked);
+    }
+
+    /// The place of a function of this identity, which has kernels of this number.
+    #[cold]
+    fn place(&mut self, kernels: u32, function: usize) -> u32 {
+        let known = self.functions.iter().position(|(known, _)| *known == function);
         let place = known.unwrap_or_else(|| {
             let place = self.functions.len();
             self.functions.push((function, kernels));
@@ -29,7 +40,10 @@ impl Met {
             }
             place
         });
-        self.hits[place].push(asked);
+        let count = self.places.len().max(kernels as usize + 1);
+        self.places.resize(count, None);
+        self.places[kernels as usize] = Some(place as u32);
+        place as u32
     }
 
     /// The hits of each function, with the number of kernels that give their normals.
@@ -54,12 +68,16 @@ mod tests {
         let mut met = Met::default();
         let asked = |place| Asked { place, t: 1.0 };
         for (function, kernels, place) in [(7, 1, 0), (9, 2, 1), (7, 3, 2), (8, 4, 3), (9, 2, 4)] {
-            met.push((function, kernels), asked(place));
+            met.push(kernels, || function, asked(place));
         }
-        assert_eq!(hits(&met), [(1, vec![0, 2]), (2, vec![1, 4]), (4, vec![3])]);
+        // A number tells the function.
+        met.push(2, || unreachable!(), asked(5));
+        assert_eq!(hits(&met), [(1, vec![0, 2]), (2, vec![1, 4, 5]), (4, vec![3])]);
         met.clear();
         assert_eq!(hits(&met), []);
-        met.push((9, 5), asked(6));
-        assert_eq!(hits(&met), [(5, vec![6])]);
+        // Numbers mean other kernels now.
+        met.push(2, || 8, asked(6));
+        met.push(5, || 9, asked(7));
+        assert_eq!(hits(&met), [(2, vec![6]), (5, vec![7])]);
     }
 }

@@ -152,9 +152,9 @@ impl Subdivision<'_> {
         self.pursue_bundles(bundles, part, (start, sight));
         for bundle in &*bundles {
             if let (true, Some(normals)) = (bundle.lacks_normals, &self.normals) {
-                let function = self.kernels[part.kernels as usize].identity();
+                let function = || self.kernels[part.kernels as usize].identity();
                 let asked = bundle.without_normals(normals);
-                asked.for_each(|asked| self.memory.met.push((function, part.kernels), asked));
+                asked.for_each(|asked| self.memory.met.push(part.kernels, function, asked));
             }
             if let Some(first) = bundle.first_of_hits() {
                 self.end_neighbours(first, &bundle.t, &bundle.wanted);

@@ -49,6 +49,12 @@ impl Packet {
         self.places[..self.count].iter().map(|place| *place as usize)
     }
 
+    /// Their columns and rows.
+    pub(super) fn positions(&self) -> impl Iterator<Item = (usize, usize)> {
+        let rays = self.columns.iter().zip(&self.rows).take(self.count);
+        rays.map(|(column, row)| (*column as usize, *row as usize))
+    }
+
     /// How many columns and rows the rays are off the middle of an area.
     #[inline(always)]
     pub(super) fn offsets<S: Simd>(&self, (simd, part): (S, usize), area: Area) -> [Lanes<S>; 2] {
@@ -125,13 +131,16 @@ impl OpenRays<'_> {
     }
 
     fn pack_block(&self, block: Area, packets: &mut Vec<Packet>) {
+        let mut packet = with_room(packets);
         for row in block.rows() {
+            let first = row * self.width;
             for column in block.columns() {
-                let place = row * self.width + column;
-                if !self.open[place] {
-                    continue;
+                if self.open[first + column] {
+                    if packet.count == ROW {
+                        packet = with_room(packets);
+                    }
+                    packet.push(first + column, (column, row));
                 }
-                with_room(packets).push(place, (column, row));
             }
         }
     }

@@ -1,14 +1,13 @@
 //! The signs of faces along a ray, and what their changes mean for what is made of them.
 
-use super::made::{Combinations, MOST};
+use smallvec::SmallVec;
+
+use super::made::{Combination, Combinations, MOST};
 use crate::{Hit, Span};
 
-/// Where faces change their signs along a ray, in order.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Roots {
-    all: [Root; 2 * MOST],
-    count: usize,
-}
+/// Where faces change their signs along a ray, in order: mostly few.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Roots(SmallVec<[Root; 4]>);
 
 /// Where a face changes its sign along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,75 +33,61 @@ pub(super) enum Event {
 /// How the signs of faces change along a ray.
 pub(super) struct Signs<'a> {
     pub(super) made: &'a Combinations,
-    pub(super) signs: [f64; MOST],
+    pub(super) signs: Combination,
     /// Whether each face is monotone along rays.
     pub(super) are_monotone: [bool; MOST],
     /// How wide the enclosure of a root may be.
     pub(super) tolerance: f64,
 }
 
-/// None so far.
-impl Default for Roots {
-    fn default() -> Self {
-        let none = Root { face: 0, hit: Hit { t: f64::NAN, bracket: Span::default() } };
-        Self { all: [none; 2 * MOST], count: 0 }
-    }
-}
-
 impl Roots {
-    /// No face has more than two.
     pub(super) fn add(&mut self, root: Root) {
-        let mut place = self.count;
-        while place > 0 && self.all[place - 1].hit.bracket.start > root.hit.bracket.start {
-            self.all[place] = self.all[place - 1];
+        self.0.push(root);
+        let mut place = self.0.len() - 1;
+        while place > 0 && self.0[place].hit.bracket.start < self.0[place - 1].hit.bracket.start {
+            self.0.swap(place - 1, place);
             place -= 1;
         }
-        self.all[place] = root;
-        self.count += 1;
     }
 
     pub(super) fn in_order(&self) -> &[Root] {
-        &self.all[..self.count]
+        &self.0
     }
 }
 
 impl Signs<'_> {
     /// Goes on behind roots whose brackets overlap those of others. A face that bends may have both of its roots among them.
     pub(super) fn pass(&mut self, roots: &[Root]) -> Event {
-        let (before, known) = (self.made.sign(&self.signs), self.signs);
-        roots.iter().for_each(|root| self.signs[root.face] = -self.signs[root.face]);
+        let known = self.signs;
+        let before = self.made.sign(known);
+        self.signs = roots.iter().fold(known, |signs, root| signs.with_other(root.face));
         // Where F begins or ends it is not zero.
-        let is_other = self.made.sign(&self.signs) * before < 0.0;
+        let is_other = self.made.sign(self.signs) * before < 0.0;
         // Where F is zero, one of those is that it may be.
         let met = || roots.iter().filter(|root| self.made.is_met(root.face));
         let Some(first) = met().next() else {
             return if is_other { Event::Unclear } else { Event::Nothing };
         };
         // What F comes to whatever signs these faces have, and if one alone has its own.
-        let mut others = known;
-        roots.iter().for_each(|root| others[root.face] = 0.0);
-        if self.made.sign(&others) != 0.0 {
+        let others = roots.iter().fold(known, |signs, root| signs.with(root.face, 0));
+        if self.made.sign(others) != 0.0 {
             return Event::Nothing;
         }
-        if self.made.may_be_nothing(&known, roots.iter().map(|root| root.face)) {
+        if self.made.may_be_nothing(known, roots.iter().map(|root| root.face)) {
             // It may be zero before it ends, or would be behind.
             return Event::Unclear;
         }
         if let [root] = roots {
             return if is_other { Event::Meeting(root.face, root.hit) } else { Event::Nothing };
         }
-        let decides = |root: &&Root| {
-            let signs = [known[root.face], -known[root.face]].map(|sign| {
-                let mut signs = others;
-                signs[root.face] = sign;
-                self.made.sign(&signs)
-            });
-            signs == [before, -before]
+        let decides = |&&Root { face, .. }: &&Root| {
+            let with = |sign| self.made.sign(others.with(face, sign));
+            with(known.sign(face)) == before && with(-known.sign(face)) == -before
         };
         if let Some(root) = met().find(decides) {
             return Event::Meeting(root.face, root.hit);
         }
-        let rises = |root: &Root| known[root.face] < 0.0;
+        let rises = |root: &Root| known.sign(root.face) < 0;
         let is_alike = |root: &Root| self.are_monotone[root.face] && rises(root) == rises(first);
         let is_simple = met().all(is_alike);
         let bracket = hull(roots);
@@ -120,9 +105,12 @@ impl Signs<'_> {
 
 /// What holds all brackets.
 pub(super) fn hull(roots: &[Root]) -> Span {
-    let start = roots.iter().map(|root| root.hit.bracket.start).fold(f64::INFINITY, f64::min);
-    let end = roots.iter().map(|root| root.hit.bracket.end).fold(f64::NEG_INFINITY, f64::max);
-    Span { start, end }
+    let brackets = roots.iter().map(|root| root.hit.bracket);
+    let nothing = Span { start: f64::INFINITY, end: f64::NEG_INFINITY };
+    brackets.fold(nothing, |hull, Span { start, end }| Span {
+        start: if start < hull.start { start } else { hull.start },
+        end: if end > hull.end { end } else { hull.end },
+    })
 }
 
 /// How many of the first roots cannot be told apart.
@@ -136,7 +124,7 @@ mod tests {
     use iso_expr::Extreme;
 
     use super::*;
-    use crate::certified::beams::made::{Made, first};
+    use crate::certified::beams::made::Made;
 
     fn root(face: usize, start: f64, end: f64) -> Root {
         Root { face, hit: Hit { t: 0.5 * (start + end), bracket: Span { start, end } } }
@@ -156,7 +144,8 @@ mod tests {
 
     fn passed<const N: usize>(made: &Made, signs: [f64; N], roots: &[Root]) -> Event {
         let (made, are_monotone) = (&Combinations::new(made, MOST), std::array::from_fn(|face| face != 3));
-        Signs { made, signs: first(signs), are_monotone, tolerance: 0.5 }.pass(roots)
+        let signs: [f64; MOST] = std::array::from_fn(|face| signs.get(face).copied().unwrap_or(0.0));
+        Signs { made, signs: Combination::of(&signs), are_monotone, tolerance: 0.5 }.pass(roots)
     }
 
     const POSITIVE: [f64; MOST] = [1.0; MOST];
@@ -166,7 +155,8 @@ mod tests {
         let [first, second] = [root(0, 1.0, 1.1), root(1, 2.0, 2.1)];
         for (made, expected) in [(least([0, 1]), first), (greatest([0, 1]), second)] {
             let made = &Combinations::new(&made, MOST);
-            let mut signs = Signs { made, signs: POSITIVE, are_monotone: [true; MOST], tolerance: 0.5 };
+            let mut signs =
+                Signs { made, signs: Combination::of(&POSITIVE), are_monotone: [true; MOST], tolerance: 0.5 };
             let found = [first, second].map(|root| signs.pass(&[root]));
             let meeting = Event::Meeting(expected.face, expected.hit);
             let meetings = found.into_iter().filter(|event| *event == meeting).count();
@@ -264,9 +254,9 @@ mod tests {
         let made = of(Extreme::Least, [of(Extreme::Greatest, [0, 1, 2].map(Made::Face)), made]);
         let made = &Combinations::new(&made, MOST);
         let are_monotone = std::array::from_fn(|face| face != 0);
-        let mut signs = Signs { made, signs: POSITIVE, are_monotone, tolerance: 0.5 };
+        let mut signs = Signs { made, signs: Combination::of(&POSITIVE), are_monotone, tolerance: 0.5 };
         assert_eq!(signs.pass(&[root(0, 1.0, 1.1), root(1, 1.05, 1.35), root(0, 1.3, 1.4)]), Event::Nothing);
-        assert_eq!(signs.signs[..4], [1.0, -1.0, 1.0, 1.0]);
+        assert_eq!([0, 1, 2, 3].map(|face| signs.signs.sign(face)), [1, -1, 1, 1]);
         assert_eq!(signs.pass(&[root(2, 1.6, 1.7)]), Event::Nothing, "the first face is positive still");
     }
 

@@ -389,8 +389,8 @@ impl<'a> Subdivision<'a> {
     /// later, with those of others.
     pub(super) fn meet(&mut self, place: usize, hit: Hit, kernels: u32) {
         if self.normals.is_some() {
-            let function = self.kernels(kernels).identity();
-            self.memory.met.push((function, kernels), Asked { place, t: hit.t });
+            let function = || self.kernels[kernels as usize].identity();
+            self.memory.met.push(kernels, function, Asked { place, t: hit.t });
         }
         self.end(place, Outcome::Hit(hit));
     }
@@ -407,6 +407,7 @@ impl<'a> Subdivision<'a> {
     }
 
     /// Notes how the search along a ray ends.
+    #[inline]
     pub(super) fn end(&mut self, place: usize, outcome: Outcome) {
         self.lacks_normals |= matches!(outcome, Outcome::Touch(_));
         self.outcomes.set(place, outcome);

@@ -8,7 +8,9 @@ use pulp::Arch;
 use super::sheaf::Sheaf;
 use super::subdivision::{Known, KnownAlong, Subdivision};
 use crate::testing::surface_of;
-use crate::{Certified, Outcome, OutcomeKind, Outcomes, Raster, Region, Span, Tile, Tracer, Workspace};
+use crate::{
+    Certified, Outcome, OutcomeKind, Outcomes, Raster, Region, Span, Tile, Traced, Tracer, Workspace,
+};
 
 /// Silhouettes, edges of unions and of intersections, one that is cut, and a limb.
 const FORMULAS: [&str; 5] = [
