@@ -41,6 +41,7 @@ pub(super) struct Signs<'a> {
 }
 
 impl Roots {
+    #[inline]
     pub(super) fn add(&mut self, root: Root) {
         self.0.push(root);
         let mut place = self.0.len() - 1;
