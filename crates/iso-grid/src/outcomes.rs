@@ -60,11 +60,17 @@ pub struct Outcomes {
     distances: Vec<f64>,
     /// Where brackets start, and where they end. They mean nothing for misses.
     brackets: [Vec<f64>; 2],
+    /// Whether none was changed since all were made misses.
+    are_misses: bool,
 }
 
 impl Outcomes {
     /// Makes them misses, so many of them.
     pub fn reset(&mut self, count: usize) {
+        if self.are_misses && self.len() == count {
+            return;
+        }
+        self.are_misses = true;
         self.kinds.clear();
         self.kinds.resize(count, OutcomeKind::Miss);
         self.distances.clear();
@@ -114,6 +120,7 @@ impl Outcomes {
             Outcome::Miss => (f64::NAN, Span::default()),
             Outcome::Undecided(stretch) => (f64::NAN, stretch),
         };
+        self.are_misses = false;
         self.kinds[number] = outcome.into();
         self.distances[number] = t;
         (self.brackets[0][number], self.brackets[1][number]) = (bracket.start, bracket.end);
@@ -126,6 +133,7 @@ impl Outcomes {
         distances: &[f64; N],
         brackets: &[[f64; N]; 2],
     ) {
+        self.are_misses = false;
         let numbers = first..first + N;
         self.kinds[numbers.clone()].fill(OutcomeKind::Hit);
         self.distances[numbers.clone()].copy_from_slice(distances);
@@ -180,11 +188,21 @@ mod tests {
         }
         assert!(outcomes.iter().eq(each.into_iter().rev()));
         assert!(are(outcomes.distances(), &[f64::NAN, f64::NAN, 1.5, 1.5]));
-        for count in [2, 5, 0] {
+        let changes: [fn(&mut Outcomes, Hit); 3] = [
+            |_, _| {},
+            |outcomes, hit| outcomes.set(1, Outcome::Hit(hit)),
+            |outcomes, Hit { t, bracket }| outcomes.put_hits(1, &[t], &[[bracket.start], [bracket.end]]),
+        ];
+        for (count, change) in
+            [2, 5, 5, 5].into_iter().flat_map(|count| changes.map(|change| (count, change)))
+        {
             outcomes.reset(count);
             assert_eq!(outcomes, vec![Outcome::Miss; count].into_iter().collect());
             assert!(are(outcomes.distances(), &vec![f64::NAN; count]));
+            change(&mut outcomes, hit);
         }
+        outcomes.reset(0);
+        assert!(outcomes.is_empty());
     }
 
     #[test]
