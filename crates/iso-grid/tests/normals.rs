@@ -5,7 +5,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use iso_expr::{Ast, Interpreter};
 use iso_grid::{
-    Certified, Outcome, OutcomeKind, Outcomes, Raster, Region, Surface, Tile, Tracer, Workspace, normals,
+    Certified, Outcome, OutcomeKind, Outcomes, Raster, Region, Surface, Tile, Traced, Tracer, Workspace,
+    normals,
 };
 
 #[test]
@@ -60,7 +61,7 @@ fn hits_on_the_edge_of_a_cut_have_the_normals_of_what_is_cut() {
         direction: DVec3::Y,
     };
     let tile = Tile::of(&raster, [0.0, -9.0], 1, 19);
-    let (outcomes, mut found) = traced(&tracer, tile);
+    let (_, outcomes, mut found) = traced(&tracer, tile);
     normals(&surface, Some(&tracer), &mut Workspace::default(), tile, &outcomes, &mut found).unwrap();
     for (row, normal) in (-9..).zip(found) {
         let z = 0.1 * f64::from(row);
@@ -69,12 +70,15 @@ fn hits_on_the_edge_of_a_cut_have_the_normals_of_what_is_cut() {
     }
 }
 
-/// Where a tracer says that rays of a tile meet the surface, and the normals that it comes by on the way.
-fn traced(tracer: &Certified, tile: Tile<'_>) -> (Outcomes, Vec<DVec3>) {
+/// What comes of a tile: where a tracer says that its rays meet the surface, and the normals that it comes by on the way.
+fn traced(tracer: &Certified, tile: Tile<'_>) -> (Traced, Outcomes, Vec<DVec3>) {
     let mut outcomes = Outcomes::default();
     let mut normals = vec![DVec3::NAN; tile.len()];
-    tracer.trace_tile(&mut Workspace::default(), tile, &mut outcomes, Some(&mut normals));
-    (outcomes, normals)
+    let traced = tracer.trace_tile(&mut Workspace::default(), tile, &mut outcomes, Some(&mut normals));
+    let are_met = outcomes.kinds().iter().map(|kind| matches!(kind, OutcomeKind::Hit | OutcomeKind::Touch));
+    let is_lacking = are_met.zip(&normals).any(|(is_met, normal)| is_met && normal.is_nan());
+    assert!(traced != Traced::OutcomesAndNormals || !is_lacking, "each hit and touch has its normal");
+    (traced, outcomes, normals)
 }
 
 #[test]
@@ -100,10 +104,11 @@ fn normals_found_on_the_way_are_those_of_the_hits_and_change_no_outcome() {
         let tracer = Certified::new(&surface, region).unwrap();
         for raster in &rasters {
             let tile = Tile::of(raster, [-31.5, -31.5], 64, 64);
-            let (outcomes, on_the_way) = traced(&tracer, tile);
+            let (traced, outcomes, on_the_way) = traced(&tracer, tile);
+            assert_eq!(traced, Traced::OutcomesAndNormals, "{formula}");
             let (mut alone, mut all) = (Outcomes::default(), vec![DVec3::NAN; tile.len()]);
             let mut workspace = Workspace::default();
-            tracer.trace_tile(&mut workspace, tile, &mut alone, None);
+            assert_eq!(tracer.trace_tile(&mut workspace, tile, &mut alone, None), Traced::Outcomes);
             assert_eq!(outcomes, alone, "{formula}");
             normals(&surface, None, &mut workspace, tile, &outcomes, &mut all).unwrap();
 
@@ -116,10 +121,35 @@ fn normals_found_on_the_way_are_those_of_the_hits_and_change_no_outcome() {
                     assert!(normal.distance(*expected) < 1e-10, "{formula}: {normal} for {expected}");
                 }
             }
-            // What is left of a formula in some place has its normals looked for afterwards.
-            let least = if surface.program().has_branches() { 0 } else { hits / 2 };
-            assert!(hits > 200 && found > least, "{formula}: {found} of {hits}");
+            assert!(hits > 200 && found == hits, "{formula}: {found} of {hits}");
         }
+    }
+}
+
+/// Of touches normals are looked for afterwards, and of hits where the gradient is infinite; of rays that are not decided there are none.
+#[test]
+fn tiles_say_what_came_of_them() {
+    let tile_at = |x: f64| Raster::Parallel {
+        middle: DVec3::new(x, 0.0, 5.0),
+        right: DVec3::new(0.05, 0.0, 0.0),
+        down: DVec3::new(0.0, -0.05, 0.0),
+        direction: DVec3::NEG_Z,
+    };
+    for (formula, x, expected) in [
+        ("x^2 + y^2 + z^2 = 1", 0.0, Traced::OutcomesAndNormals),
+        ("x^2 + y^2 + z^2 = 1", 10.0, Traced::Nothing),
+        ("(x^2 + y^2 + z^2 - 1)^2 = 0", 0.0, Traced::Outcomes),
+        ("cbrt(z) = 0", 0.0, Traced::Outcomes),
+        ("sign(z - x/9) = 0", 0.0, Traced::OutcomesAndNormals),
+    ] {
+        let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().program().simplified();
+        let surface = Surface::new(Arc::new(Interpreter), program);
+        let region = Region::new(DVec3::splat(-1.6), DVec3::splat(1.6)).unwrap();
+        let tracer = Certified::new(&surface, region).unwrap();
+        let (traced, outcomes, _) = traced(&tracer, Tile::of(&tile_at(x), [-7.5, -7.5], 16, 16));
+        assert_eq!(traced, expected, "{formula}");
+        let is_missed = outcomes.kinds().iter().all(|kind| *kind == OutcomeKind::Miss);
+        assert_eq!(is_missed, expected == Traced::Nothing, "{formula}");
     }
 }
 
