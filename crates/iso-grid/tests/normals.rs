@@ -139,7 +139,7 @@ fn tiles_say_what_came_of_them() {
         ("x^2 + y^2 + z^2 = 1", 0.0, Traced::OutcomesAndNormals),
         ("x^2 + y^2 + z^2 = 1", 10.0, Traced::Nothing),
         ("(x^2 + y^2 + z^2 - 1)^2 = 0", 0.0, Traced::Outcomes),
-        ("cbrt(z) = 0", 0.0, Traced::Outcomes),
+        ("z = cbrt(x)", 0.025, Traced::Outcomes),
         ("sign(z - x/9) = 0", 0.0, Traced::OutcomesAndNormals),
     ] {
         let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().program().simplified();
