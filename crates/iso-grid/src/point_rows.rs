@@ -80,3 +80,48 @@ fn room(rows: &mut Vec<Row>, count: usize) -> &mut [Row] {
     rows.resize(count.max(rows.len()), Row::default());
     &mut rows[..count]
 }
+
+#[cfg(test)]
+mod tests {
+    use iso_expr::{Ast, Engine, Interpreter};
+
+    use super::*;
+
+    /// Whatever more stood in memory before.
+    #[test]
+    fn kernels_see_the_rows_that_were_put_last() {
+        let program = Ast::parse("x + 2y + 3z * z").unwrap().lower(&[]).unwrap().minus_level(1.0);
+        let [values, slopes] = [program.clone(), program.with_slope()]
+            .map(|program| Interpreter.batch(&program.simplified()).unwrap());
+        let (mut points, mut scratch) = (PointRows::default(), Scratch::default());
+        let direction = |place: usize| [1.0, 0.5, 0.25 * place as f64];
+        for (turn, count) in [3, 1, 2, 5, 4].into_iter().enumerate() {
+            let at = |place: usize| [1, 10, 100].map(|scale| (scale * (8 * turn + place)) as f64);
+            let of = |[x, y, z]: [f64; 3]| x + 2.0 * y + 3.0 * z * z - 1.0;
+            for (place, rows) in points.replace(count).enumerate() {
+                rows.into_iter().zip(at(place)).for_each(|(row, number)| *row = [number; ROW]);
+            }
+            let expected: Vec<_> = (0..count).map(|place| [of(at(place)); ROW]).collect();
+            assert_eq!(points.evaluate(&*values, &mut scratch, 1), expected);
+
+            let one = DVec3::new(1.0, -1.0, turn as f64 / 2.0);
+            for is_common in [true, false, true] {
+                if is_common {
+                    points.aim(one);
+                } else {
+                    for (place, rows) in points.directions().enumerate() {
+                        let each = rows.into_iter().zip(direction(place));
+                        each.for_each(|(row, number)| *row = [number; ROW]);
+                    }
+                }
+                let slope = |place: usize| {
+                    let [dx, dy, dz] = if is_common { one.to_array() } else { direction(place) };
+                    dx + 2.0 * dy + 6.0 * at(place)[2] * dz
+                };
+                let [found, along] = points.slopes(&*slopes, &mut scratch).split_at(count).into();
+                assert_eq!(found, expected);
+                assert_eq!(along, (0..count).map(|place| [slope(place); ROW]).collect::<Vec<_>>());
+            }
+        }
+    }
+}

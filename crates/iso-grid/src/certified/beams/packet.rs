@@ -131,16 +131,13 @@ impl OpenRays<'_> {
     }
 
     fn pack_block(&self, block: Area, packets: &mut Vec<Packet>) {
-        let mut packet = with_room(packets);
         for row in block.rows() {
-            let first = row * self.width;
             for column in block.columns() {
-                if self.open[first + column] {
-                    if packet.count == ROW {
-                        packet = with_room(packets);
-                    }
-                    packet.push(first + column, (column, row));
+                let place = row * self.width + column;
+                if !self.open[place] {
+                    continue;
                 }
+                with_room(packets).push(place, (column, row));
             }
         }
     }

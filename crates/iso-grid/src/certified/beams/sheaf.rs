@@ -161,8 +161,10 @@ impl Sheaf {
 #[cfg(test)]
 mod tests {
     use iso_expr::random::Random;
+    use pulp::Scalar;
 
     use super::*;
+    use crate::lanes::parts;
 
     /// How far beyond the likely ones a ray may be that is taken along.
     const NEARLY: f64 = 1.01 * ROUNDED;
@@ -222,6 +224,22 @@ mod tests {
             others += found.len() - likely.len();
         }
         assert!(fewest == 0 && most > 100 && others < 2000, "{fewest}..{most}, {others}");
+    }
+
+    #[test]
+    fn starts_side_by_side_are_those_one_by_one() {
+        let mut random = Random::new(7);
+        let simd = Scalar::new();
+        for _ in 0..1000 {
+            let [t, by_column, by_row, column, row] = [(); 5].map(|()| random.between(-9.0, 9.0));
+            let model = Model { t, by_column, by_row, uncertainty: 0.1 };
+            let start = Start::new(&model, (2.5, -3.5), Span { start: 5.0, end: 6.0 });
+            let mut found = [0.0; ROW];
+            for part in 0..parts::<Scalar>() {
+                start.at_all([column, row].map(|number| Lanes::all(simd, number))).put(&mut found, part);
+            }
+            assert_eq!(found.map(f64::to_bits), [start.at(column, row).to_bits(); ROW]);
+        }
     }
 
     #[test]
