@@ -28,11 +28,11 @@ impl PointRows {
         x.zip(y).zip(z).map(|((x, y), z)| [x, y, z])
     }
 
-    /// The directions of the rays, to be written to.
-    pub(crate) fn directions(&mut self) -> impl Iterator<Item = [&mut Row; 3]> {
+    /// Makes these the directions of the rays, row by row. What stands behind them means nothing.
+    pub(crate) fn aim_each<'a>(&mut self, directions: impl Iterator<Item = &'a [Row; 3]>) {
         self.common = None;
         let [x, y, z] = self.directions.each_mut().map(|rows| room(rows, self.count).iter_mut());
-        x.zip(y).zip(z).map(|((x, y), z)| [x, y, z])
+        x.zip(y).zip(z).zip(directions).for_each(|(((x, y), z), each)| [*x, *y, *z] = *each);
     }
 
     /// Makes this the direction of all rays.
@@ -109,10 +109,9 @@ mod tests {
                 if is_common {
                     points.aim(one);
                 } else {
-                    for (place, rows) in points.directions().enumerate() {
-                        let each = rows.into_iter().zip(direction(place));
-                        each.for_each(|(row, number)| *row = [number; ROW]);
-                    }
+                    let each: Vec<_> =
+                        (0..count + 2).map(|place| direction(place).map(|number| [number; ROW])).collect();
+                    points.aim_each(each.iter());
                 }
                 let slope = |place: usize| {
                     let [dx, dy, dz] = if is_common { one.to_array() } else { direction(place) };

@@ -362,15 +362,7 @@ impl WithSimd for Pursuit<'_> {
                 (Need::Slopes, _) => {
                     match tile.direction() {
                         Some(direction) => points.aim(direction),
-                        None => {
-                            for (directions, number) in points.directions().zip(&open) {
-                                for (to, from) in
-                                    directions.into_iter().zip(&bundles[*number].rays.directions)
-                                {
-                                    *to = *from;
-                                }
-                            }
-                        }
+                        None => points.aim_each(open.iter().map(|number| &bundles[*number].rays.directions)),
                     }
                     points.slopes(slopes, scratch)
                 }

@@ -24,8 +24,7 @@ const CLOSE: f64 = 64.0 * f64::EPSILON;
 /// A ray of a part on which F may be zero, and what is known of each face along it.
 #[derive(Clone, Debug)]
 pub(crate) struct Meeting {
-    /// Which ray of the tile, and its column and row there.
-    place: usize,
+    /// The ray's column and row in the tile.
     position: (usize, usize),
     /// Before it F is not zero, and behind it nothing is asked for, since F has been zero there.
     asked: Span,
@@ -96,7 +95,7 @@ impl WithSimd for Survey<'_> {
         for packet in packets {
             let outlook = body.outlook(simd, packet, rays.area);
             let of_faces = body.made.of_rows(simd, &outlook.signs);
-            for (lane, (place, position)) in packet.places().zip(packet.positions()).enumerate() {
+            for (lane, position) in packet.positions().enumerate() {
                 let signs = of_faces[lane];
                 if body.made.sign(signs) != 0.0 {
                     continue;
@@ -106,7 +105,6 @@ impl WithSimd for Survey<'_> {
                     packet.put_into(&mut alone[face], lane);
                 } else {
                     meetings.push(Meeting {
-                        place,
                         position,
                         asked: body.asked,
                         likely: outlook.likely[lane],
@@ -354,9 +352,11 @@ impl Subdivision<'_> {
         &mut self,
         part: &Part,
         (faces, made): (&[Face], &Combinations),
-        Meeting { place, position, asked, signs, roots, .. }: &Meeting,
+        Meeting { position, asked, signs, roots, .. }: &Meeting,
     ) {
-        let (place, mut roots, mut known_to) = (*place, roots.in_order(), asked.end);
+        let (column, row) = *position;
+        let place = row * self.tile.width() + column;
+        let (mut roots, mut known_to) = (roots.in_order(), asked.end);
         let mut are_monotone = [true; MOST];
         are_monotone.iter_mut().zip(faces).for_each(|(is, face)| *is = face.bow.is_monotone());
         let mut signs = Signs { made, signs: *signs, are_monotone, tolerance: self.tolerance(part) };

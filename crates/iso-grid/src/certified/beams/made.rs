@@ -11,6 +11,7 @@ pub(super) const MOST: usize = 5;
 
 /// How many combinations of signs there are, of which each is negative, unknown or positive.
 const COMBINATIONS: usize = 3_usize.pow(MOST as u32);
+const _: () = assert!(COMBINATIONS <= 1 << u8::BITS, "a byte tells each combination");
 
 /// How far apart combinations stand in which a face has signs that are one apart.
 const STEPS: [i32; MOST] = {
@@ -40,7 +41,7 @@ static OF_FACES: [[i8; COMBINATIONS]; MOST] = {
     signs
 };
 
-/// The signs of some faces, by their place among all.
+/// The signs of some faces, by their place among all combinations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Combination(u8);
 
