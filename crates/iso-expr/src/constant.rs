@@ -25,6 +25,8 @@ impl Constant {
     /// The real number e, whose nearest double lies below it.
     pub const E: Self = Self::between(std::f64::consts::E, std::f64::consts::E.next_up());
 
+    pub(crate) const ONE: Self = Self::between(1.0, 1.0);
+
     /// The double `value`, exactly. A NaN has the empty enclosure: it is no real number.
     pub fn exact(value: f64) -> Self {
         Self { value, enclosure: Interval::point(value) }

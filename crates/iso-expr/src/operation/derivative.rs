@@ -5,8 +5,10 @@
 
 mod share;
 
+pub(crate) use share::MeanByShares;
+
 use super::Operation;
-use crate::{Constant, Node, NodeId, Program};
+use crate::{Node, NodeId, Program};
 
 /// One application of an operation whose derivative is wanted.
 #[derive(Debug)]
@@ -89,7 +91,7 @@ impl Chain<'_> {
     /// constants of a polynomial fold into one.
     fn product(&mut self, factor: NodeId, derivative: Option<NodeId>) -> Option<NodeId> {
         let derivative = derivative?;
-        if self.program.node(derivative) == Node::Constant(Constant::exact(1.0)) {
+        if self.program.node(derivative) == Node::ONE {
             return Some(factor);
         }
         Some(match self.program.node(derivative) {

@@ -9,6 +9,7 @@ mod table;
 pub(crate) mod value;
 
 pub use derivative::Chain;
+pub(crate) use derivative::MeanByShares;
 pub use squaring::by_squaring;
 use table::Row;
 pub use value::Value;

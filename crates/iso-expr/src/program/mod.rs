@@ -96,6 +96,8 @@ pub enum Node {
 }
 
 impl Node {
+    pub(crate) const ONE: Self = Self::Constant(Constant::ONE);
+
     /// This node with each operand replaced.
     fn with_operands(self, mut replace: impl FnMut(NodeId) -> NodeId) -> Self {
         match self {

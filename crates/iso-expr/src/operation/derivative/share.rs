@@ -31,7 +31,56 @@ impl Exponentials {
     }
 }
 
+/// own·s + other·(1 − s), as the derivative of the logarithm of two exponentials is written: s is the share of one of them.
+pub(crate) struct MeanByShares {
+    pub(crate) share: NodeId,
+    /// What is multiplied by the share, factor by factor.
+    pub(crate) own: Vec<NodeId>,
+    /// What is multiplied by the other's share.
+    pub(crate) other: Vec<NodeId>,
+}
+
+/// A multiple of 1/(1 + eᵇ⁻ᵃ).
+struct MultipleOfShare {
+    share: NodeId,
+    /// The exponents b and a.
+    exponents: (NodeId, NodeId),
+    factors: Vec<NodeId>,
+}
+
 impl Program {
+    /// Whether a sum of two terms is a mean by the shares of two exponentials.
+    pub(crate) fn mean_by_shares(&self, a: NodeId, b: NodeId) -> Option<MeanByShares> {
+        let [own, other] = [self.multiple_of_share(a)?, self.multiple_of_share(b)?];
+        let (least, most) = own.exponents;
+        let make_whole = other.exponents == (most, least);
+        make_whole.then_some(MeanByShares { share: own.share, own: own.factors, other: other.factors })
+    }
+
+    /// A share times a factor, as [`Chain::product`] writes products; simplifying puts constants in front.
+    fn multiple_of_share(&self, term: NodeId) -> Option<MultipleOfShare> {
+        let (mut factors, mut rest) = (Vec::new(), term);
+        loop {
+            if let Some(exponents) = self.exponents_of_share(rest) {
+                return Some(MultipleOfShare { share: rest, exponents, factors });
+            }
+            let Node::Apply(Operation::Multiply, [a, b, _]) = self.node(rest) else { return None };
+            let is_first = self.exponents_of_share(a).is_some();
+            let (next, factor) = if is_first { (a, b) } else { (b, a) };
+            factors.push(factor);
+            rest = next;
+        }
+    }
+
+    /// The exponents b and a of a share 1/(1 + eᵇ⁻ᵃ).
+    fn exponents_of_share(&self, quotient: NodeId) -> Option<(NodeId, NodeId)> {
+        let Node::Apply(Operation::Divide, [one, whole, _]) = self.node(quotient) else { return None };
+        let Node::Apply(Operation::Add, [own, other, _]) = self.node(whole) else { return None };
+        let Node::Apply(Operation::Exp, [difference, ..]) = self.node(other) else { return None };
+        let Node::Apply(Operation::Subtract, [b, a, _]) = self.node(difference) else { return None };
+        [one, own].into_iter().all(|id| self.node(id) == Node::ONE).then_some((b, a))
+    }
+
     /// Whether a node is a sum of exponentials and positive constants, and not of too many.
     pub(crate) fn is_sum_of_exponentials(&self, sum: NodeId) -> bool {
         self.exponentials(sum).is_some()

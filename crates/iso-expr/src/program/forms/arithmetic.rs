@@ -86,6 +86,44 @@ impl Builder {
         if is_one { x } else { self.product(y, x) }
     }
 
+    /// x/y = c + (x − c·y)/n + (x − c·y)/n·(n/y − 1), where n is y's middle, c the quotient of the middles and |n/y − 1| ≤ r/(|n| − r) for y's
+    /// deviation r. What x and y have in common cancels in x − c·y, as where x is a derivative of what y is a root of.
+    pub(super) fn quotient(&mut self, x: Form, y: Form) -> Form {
+        let (Some(_), Some(deviation)) = (self.deviation(x), self.deviation(y)) else {
+            let reciprocal = self.reciprocal(y);
+            return self.multiple(reciprocal, x);
+        };
+        let distance = self.distance(y.middle, deviation);
+        let stays_away = self.is_positive(distance);
+        let distance = self.provided(stays_away, distance);
+        let middle = self.of(Operation::Divide, x.middle, y.middle);
+        let one = self.0.literal(1.0);
+        let inverse = self.of(Operation::Divide, one, y.middle);
+        // Scaled before they are multiplied, so that what underflows is not made larger afterwards.
+        let [x_slopes, y_slopes] =
+            [x, y].map(|form| form.slopes.map(|slope| slope.map(|slope| self.times(slope, inverse))));
+        let slopes = [0, 1, 2].map(|place| {
+            let common = y_slopes[place].map(|slope| self.times(middle, slope));
+            match (x_slopes[place], common) {
+                (Some(own), Some(common)) => Some(self.of(Operation::Subtract, own, common)),
+                (own, common) => own.or_else(|| common.map(|common| self.negated(common))),
+            }
+        });
+        let [size_of_inverse, size_of_middle] = [inverse, middle].map(|number| self.magnitude_of(number));
+        let [of_x, of_y] = [x, y].map(|form| form.rest.map(|rest| self.times(rest, size_of_inverse)));
+        let of_y = of_y.map(|rest| self.times(size_of_middle, rest));
+        let rest = self.0.sum(of_x, of_y);
+        let linear = Form { middle, slopes, rest, size: size_of_middle };
+        let bend = self.deviation(linear).map(|change| {
+            let part = self.of(Operation::Divide, deviation, distance);
+            self.times(change, part)
+        });
+        let rest = self.0.sum(rest, bend);
+        let size = self.of(Operation::Divide, x.size, distance);
+        let size = self.larger(size);
+        Form { middle, slopes, rest: self.rounded(rest, size), size }
+    }
+
     /// 1/(m + Δ) = 1/m − Δ/m² + Δ²/(m²·(m + Δ)), whose last term has the sign of m and is at most r²/(m²·(|m| − r)) for the
     /// deviation r.
     pub(super) fn reciprocal(&mut self, x: Form) -> Form {

@@ -35,7 +35,8 @@ impl Builder {
         let magnitude = self.magnitude_of(sign);
         let rest = x.rest.map(|rest| self.times(magnitude, rest));
         let rest = self.0.sum(rest, Some(off));
-        Form { middle, slopes, rest: self.rounded(rest, x.size), size: x.size }
+        let size = self.larger(x.size);
+        Form { middle, slopes, rest: self.rounded(rest, size), size }
     }
 
     /// The maximum for `toward` addition, the minimum for subtraction.
@@ -136,7 +137,8 @@ impl Builder {
         let middle = mixed(Some(x.middle), Some(y.middle)).expect("both are there");
         let slopes = [0, 1, 2].map(|place| mixed(x.slopes[place], y.slopes[place]));
         let rest = mixed(x.rest, y.rest);
-        Form { middle, slopes, rest, size: self.of(Operation::Add, x.size, y.size) }
+        let size = self.of(Operation::Add, x.size, y.size);
+        Form { middle, slopes, rest, size: self.larger(size) }
     }
 
     fn signed(&mut self, x: Form) -> Signed {

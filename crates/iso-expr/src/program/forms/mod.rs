@@ -64,11 +64,14 @@ impl Program {
                     }
                 }
                 Node::Apply(Operation::Divide, [numerator, divisor, _]) => {
-                    let reciprocal = match builder.share_in_sum(self, divisor, &forms) {
-                        Some(share) => share,
-                        None => builder.reciprocal(forms[divisor.index()]),
-                    };
-                    builder.multiple(reciprocal, forms[numerator.index()])
+                    let numerator = forms[numerator.index()];
+                    match builder.share_in_sum(self, divisor, &forms) {
+                        Some(share) => builder.multiple(share, numerator),
+                        None => builder.quotient(numerator, forms[divisor.index()]),
+                    }
+                }
+                Node::Apply(Operation::Add, [a, b, _]) if let Some(mean) = self.mean_by_shares(a, b) => {
+                    builder.mean(&mean, &forms)
                 }
                 Node::Apply(operation, operands) => {
                     let forms = operands.map(|operand| forms[operand.index()]);

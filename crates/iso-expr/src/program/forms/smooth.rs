@@ -4,7 +4,8 @@
 //! convex, its slopes are shares, which lie between 0 and 1, and all that bends it is that one share gives way to the other.
 
 use super::{Builder, Form, NodeId, Operation};
-use crate::{Node, Program};
+use crate::operation::MeanByShares;
+use crate::{Constant, Node, Program};
 
 /// No curvature of ln(1 + eˣ) exceeds it.
 const STEEPEST_OF_MAXIMA: f64 = 0.25;
@@ -57,10 +58,7 @@ impl Builder {
     /// The reciprocal of 1 and a sum of exponentials; `None` of another sum.
     pub(super) fn share_in_sum(&mut self, source: &Program, sum: NodeId, forms: &[Form]) -> Option<Form> {
         let Node::Apply(Operation::Add, [a, b, _]) = source.node(sum) else { return None };
-        let is_one = |id| match source.node(id) {
-            Node::Constant(constant) => constant.is_exact() && constant.value() == 1.0,
-            _ => false,
-        };
+        let is_one = |id| source.node(id) == Node::ONE;
         let others = if is_one(a) { b } else { a };
         if !is_one(a) && !is_one(b) {
             return None;
@@ -68,6 +66,35 @@ impl Builder {
         let exponent = self.logarithm_of_sum(source, others, forms)?;
         let exponent = self.negative(exponent);
         Some(self.share(exponent))
+    }
+
+    /// s·x + (1 − s)·y = w·x + (1 − w)·y + (s − w)·(x − y) for the share s with the middle w. As a sum of products it would not be known that both
+    /// shares make a whole.
+    pub(super) fn mean(&mut self, mean: &MeanByShares, forms: &[Form]) -> Form {
+        let share = forms[mean.share.index()];
+        let [x, y] = [&mean.own, &mean.other].map(|factors| {
+            let forms = factors.iter().map(|factor| forms[factor.index()]);
+            let product = forms.reduce(|product, factor| self.product(factor, product));
+            product.unwrap_or_else(|| self.constant(Constant::ONE))
+        });
+        let one = self.0.literal(1.0);
+        let rest_of_whole = self.of(Operation::Subtract, one, share.middle);
+        let mixed = self.mixture((share.middle, rest_of_whole), x, y);
+        let difference = self.difference(x, y);
+        let magnitude = self.magnitude_of(difference.middle);
+        let slopes = [0, 1, 2].map(|place| {
+            let shift = share.slopes[place].map(|slope| self.times(difference.middle, slope));
+            self.0.sum(mixed.slopes[place], shift)
+        });
+        let of_share = share.rest.map(|rest| self.times(magnitude, rest));
+        let of_both = match (self.deviation(share), self.deviation(difference)) {
+            (Some(share), Some(difference)) => Some(self.times(share, difference)),
+            _ => None,
+        };
+        let rest = self.0.sum(mixed.rest, of_share);
+        let rest = self.0.sum(rest, of_both);
+        // A share deviates by less than 1, so that this is no less than each of the parts.
+        Form { slopes, rest: self.rounded(rest, mixed.size), ..mixed }
     }
 
     /// ln(eˣ + eʸ). It exceeds its tangent plane by no more than half the greatest curvature times the square of the deviation of

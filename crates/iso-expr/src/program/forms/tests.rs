@@ -159,6 +159,7 @@ fn smooth_maxima_and_shares_are_in_their_forms() {
         "1/(1 + exp(x))",
         "y/(exp(x - y) + 1) - 1/(1 + (exp(3x) + exp(z - x)))",
         "ln(exp(-8*ln(exp(x) + exp(y))) + exp(-8*z))/8",
+        "ln(exp(3x - y) + exp(x*y - x))",
     ];
     let mut random = Random::new(16);
     for formula in formulas {
@@ -175,6 +176,26 @@ fn smooth_maxima_and_shares_are_in_their_forms() {
             }
         }
     }
+}
+
+/// ∂/∂x ln(eˣ⁺ʸ + eˣ) is 1, although the shares of both change with y, and with 2x in the second place it is 1 + s for the share s of that.
+#[test]
+fn shares_of_a_whole_sum_up_to_one() {
+    let form = |formula: &str| {
+        let value = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
+        let mut slope = value.with_gradient().simplified();
+        slope.set_outputs(vec![slope.outputs()[1]]);
+        let arguments = [[0.0; PARTS], [0.0, 0.5, 0.0, 0.0, 0.0], [0.0; PARTS]];
+        form_of(&slope.pruned().with_forms().unwrap(), arguments)
+    };
+    let [middle, slope, .., rest] = form("ln(exp(x + y) + exp(x))");
+    assert!(
+        (middle - 1.0).abs() < 1e-12 && slope.abs() < 1e-12 && rest < 1e-12,
+        "{middle} + {slope}·e ± {rest}"
+    );
+    let [middle, slope, .., rest] = form("ln(exp(-3*(x + y)) + exp(-6*x))/-3");
+    assert!((middle - 1.5).abs() < 1e-12 && (slope - 0.375).abs() < 1e-12, "{middle} + {slope}·e ± {rest}");
+    assert!(rest < 0.12, "{rest}");
 }
 
 /// Written out, this sum has 10¹² terms.
@@ -286,8 +307,24 @@ fn forms_know_what_values_have_in_common() {
     close(form("x*y - y*x"), [0.0, 0.0, 0.0, 0.0, 0.02]);
     // 1/(1 + u) = 1 − u + u²/(1 + u), whose last term is from 0 to 0.01/0.9.
     close(form("1/x"), [1.0 + 0.005 / 0.9, -0.1, 0.0, 0.0, 0.005 / 0.9]);
+    close(form("(x + x)/x"), [2.0, 0.0, 0.0, 0.0, 0.0]);
+    // x/y = ½ + (x − ½y)/y, where (x − ½y)/2 is 0.05·e − 0.025·f, no more than 0.075, and y no less than 1.9.
+    close(form("x/y"), [0.5, 0.05, -0.025, 0.0, 0.075 * 0.1 / 1.9]);
     close(form("max(x, y)"), [2.0, 0.0, 0.1, 0.0, 0.0]);
     assert!(form("1/(x - 1)")[4].is_nan() && form("sqrt(x - 1)")[4].is_nan());
+}
+
+/// What is multiplied by a weight may underflow.
+#[test]
+fn choices_of_the_least_doubles_are_in_their_forms() {
+    for formula in ["abs(x)", "abs(-x)", "max(x, y)", "min(x, 2*x)"] {
+        let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().minus_level(0.0);
+        let forms = program.with_forms().unwrap();
+        for value in [f64::from_bits(1), -f64::from_bits(3)] {
+            let arguments = [[value, 0.0, 0.0, 0.0, 0.0], [0.0; PARTS], [0.0; PARTS]];
+            compare(&mut Random::new(18), &program, (arguments, form_of(&forms, arguments)));
+        }
+    }
 }
 
 #[test]

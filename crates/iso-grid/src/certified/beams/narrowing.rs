@@ -88,7 +88,7 @@ impl Subdivision<'_> {
     }
 
     /// Keeps a slab, with nothing known of F there.
-    fn keep_unknown(&mut self, &Slab { beam, kernels, stretch, reach, is_inside, .. }: &Slab) {
+    pub(super) fn keep_unknown(&mut self, &Slab { beam, kernels, stretch, reach, is_inside, .. }: &Slab) {
         self.memory.ahead.push(Part { beam, kernels, stretch, form: Form::unknown(reach), is_inside });
     }
 

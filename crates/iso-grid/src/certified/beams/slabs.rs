@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use glam::DVec3;
-use iso_expr::{Composition, Interval};
+use iso_expr::{Composition, Decorated, Decoration, Interval};
 
 use super::beam::Beam;
 use super::form::{Form, Gradient, along};
@@ -40,6 +40,8 @@ pub(super) struct Slab {
     /// The middle of `reach`, and a point of the box that is in the middle of the beam there where that is in the region.
     pub(super) middle: (f64, DVec3),
     pub(super) is_inside: bool,
+    /// Whether F was enclosed over the box and may be undefined there or jump.
+    pub(super) may_break: bool,
 }
 
 impl Slab {
@@ -61,6 +63,7 @@ impl Slab {
             hi,
             middle: (t, middle.clamp(lo, hi)),
             is_inside: lo == lo_in_space && hi == hi_in_space,
+            may_break: false,
         })
     }
 }
@@ -139,10 +142,15 @@ impl Subdivision<'_> {
             let count = self.drop_free(slabs);
             slabs = &mut slabs[..count];
         }
-        if has_forms {
-            self.keep_by_forms(slabs);
-        } else {
-            self.keep_by_gradients(slabs);
+        for slabs in slabs.chunk_by_mut(|a, b| a.may_break == b.may_break) {
+            if slabs[0].may_break {
+                // As beside a pole, where neither forms nor gradients would say anything.
+                slabs.iter().for_each(|slab| self.keep_unknown(slab));
+            } else if has_forms {
+                self.keep_by_forms(slabs);
+            } else {
+                self.keep_by_gradients(slabs);
+            }
         }
     }
 
@@ -265,8 +273,7 @@ impl Subdivision<'_> {
         let boxes = &self.workspace.boxes;
         let Slab { beam, kernels, stretch, reach, is_inside, .. } = *slab;
         let Some(gradient) = Gradient::new([0, 1, 2, 3].map(|output| boxes.decorated(output, number))) else {
-            let form = Form::unknown(reach);
-            self.memory.ahead.push(Part { beam, kernels, stretch, form, is_inside });
+            self.keep_unknown(slab);
             return None;
         };
         let rays = &self.memory.beams[beam as usize];
@@ -295,7 +302,7 @@ impl Subdivision<'_> {
         is_monotone.then_some(Behind { gradient, reach })
     }
 
-    /// Moves the slabs over which the enclosure of F does not exclude zero to the front, and counts them.
+    /// Moves the slabs over which the enclosure of F does not exclude zero to the front, notes of each whether F may break there, and counts them.
     pub(super) fn drop_free(&mut self, slabs: &mut [Slab]) -> usize {
         let Workspace { boxes, scratch, counters, .. } = &mut *self.workspace;
         let kernels = &self.kernels[slabs[0].kernels as usize];
@@ -306,8 +313,9 @@ impl Subdivision<'_> {
         self.work_left = self.work_left.saturating_sub(slabs.len() as u64);
         let mut kept = 0;
         for number in 0..slabs.len() {
-            if !free_of_zero(boxes.interval(0, number)) {
-                slabs[kept] = slabs[number];
+            let Decorated { interval, decoration } = boxes.decorated(0, number);
+            if !free_of_zero(interval) {
+                slabs[kept] = Slab { may_break: decoration < Decoration::Continuous, ..slabs[number] };
                 kept += 1;
             }
         }
