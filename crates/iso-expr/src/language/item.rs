@@ -60,6 +60,12 @@ pub(super) fn items(text: &str) -> (Vec<Item<'_>>, Vec<Head<'_>>) {
     (items, heads)
 }
 
+/// Whether `text` is a name that a definition could have, unless the language has a meaning for it.
+pub(super) fn is_name(text: &str) -> bool {
+    let (items, _) = items(text);
+    matches!(items[..], [item, Item { kind: Kind::EOI, .. }] if item.kind == Kind::name && item.text == text)
+}
+
 fn item<'t>(pair: &pest::iterators::Pair<'t, Rule>) -> Item<'t> {
     Item { kind: pair.as_rule(), text: pair.as_str(), start: pair.as_span().start() }
 }

@@ -7,7 +7,9 @@ use super::builder::Builder;
 use super::domain::Domain;
 use super::error::{FormulaError, FormulaErrorKind};
 use super::function::{Function, prelude};
+use super::item::is_name;
 use super::limits;
+use super::scope::meaning_in_language;
 use super::suggestion::nearest;
 use crate::{NodeId, Operation, Program};
 
@@ -123,12 +125,26 @@ impl Ast {
 
     fn unknown_parameter(&self, name: &str) -> FormulaError {
         let names = || self.definitions.iter().filter(|it| it.is_parameter()).map(|it| it.name.as_str());
+        let meaning = meaning_in_language(name);
         let help = match nearest(name, names()) {
             Some(near) => format!("did you mean `{near}`?"),
-            None if names().next().is_none() => format!("define one before the formula: `{name} := 1`"),
-            None => format!("its parameters are {}", names().take(20).collect::<Vec<_>>().join(", ")),
+            None if meaning.is_none() && !is_name(name) => {
+                "a name is a letter, and letters, digits and `_` may follow".to_owned()
+            }
+            None if names().next().is_some() => {
+                format!("its parameters are {}", names().take(20).collect::<Vec<_>>().join(", "))
+            }
+            None if meaning.is_some() => {
+                "define one of another name before the formula, as in `a := 1`".to_owned()
+            }
+            None => format!("define one before the formula: `{name} := 1`"),
         };
-        FormulaError::new(FormulaErrorKind::UnknownParameter { name: name.to_owned() }, 0..0).with_help(help)
+        let name = name.to_owned();
+        let kind = match meaning {
+            Some(meaning) => FormulaErrorKind::NotAParameter { name, meaning },
+            None => FormulaErrorKind::UnknownParameter { name },
+        };
+        FormulaError::new(kind, 0..0).with_help(help)
     }
 }
 
@@ -384,6 +400,36 @@ mod tests {
         assert_eq!(lower("3 = 1").value(), Some(2.0));
         assert!(lower("ln(-1)").value().unwrap().is_nan());
         assert_eq!(lower("x - x").value(), None);
+    }
+
+    /// Whoever does what the help says gets no other error.
+    #[test]
+    fn parameters_that_are_none_are_told_what_they_are() {
+        let refused = |name: &str| {
+            let error = Ast::parse("x = y").unwrap().lower(&[(name.to_owned(), 1.0)]).unwrap_err();
+            (error.to_string(), error.help.unwrap())
+        };
+        for (name, meaning) in [
+            ("x", "a coordinate"),
+            ("pi", "a constant of the language"),
+            ("π", "a constant of the language"),
+            ("sin", "a function of the language"),
+            ("clamp", "a function of the language"),
+            ("where", "a word of the language"),
+        ] {
+            let (error, help) = refused(name);
+            assert_eq!(error, format!("`{name}` is {meaning}, not a parameter"));
+            assert!(help.contains("of another name"), "{name}: {help}");
+        }
+        for name in ["2", "2a", "a b", "a.b", "a := 1; b"] {
+            let (error, help) = refused(name);
+            assert_eq!(error, format!("the formula has no parameter `{name}`"));
+            assert!(help.starts_with("a name is a letter"), "{name}: {help}");
+        }
+        for name in ["b", "r_2", "é"] {
+            assert!(refused(name).1.ends_with(&format!("`{name} := 1`")));
+            Ast::parse(&format!("{name} := 1; x = y")).unwrap();
+        }
     }
 
     #[test]

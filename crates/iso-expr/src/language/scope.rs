@@ -8,6 +8,9 @@ use super::function::{ArgumentCount, Function, prelude};
 use super::item::{Head, Item};
 use crate::{Axis, Operation};
 
+/// Constants that stand for themselves wherever they are written, and are no names.
+const SYMBOLS: [&str; 2] = ["π", "τ"];
+
 /// Words that no definition may take.
 const KEYWORDS: [&str; 4] = ["and", "or", "not", "where"];
 
@@ -32,7 +35,7 @@ impl<'t> Scope<'t> {
     pub(super) fn of_formula(heads: &'t [Head<'t>]) -> Result<Self, FormulaError> {
         let scope = Self { heads, places: places(heads)?, is_prelude: false };
         for head in heads {
-            scope.check_free(head)?;
+            Self::check_free(head)?;
         }
         Ok(scope)
     }
@@ -120,23 +123,28 @@ impl<'t> Scope<'t> {
     }
 
     /// That a definition takes no name of the language. A function's parameters may be called x, y or z.
-    fn check_free(&self, head: &Head<'_>) -> Result<(), FormulaError> {
-        let is_axis = Axis::ALL.iter().any(|axis| axis.name() == head.name.text);
-        if is_axis {
-            return Err(reserved(&head.name, "a coordinate"));
-        }
-        for item in [&head.name].into_iter().chain(&head.parameters) {
-            if constant(item.text).is_some() {
-                return Err(reserved(item, "a constant of the language"));
-            }
-            if self.language_function(item.text).is_some() {
-                return Err(reserved(item, "a function of the language"));
-            }
-            if KEYWORDS.contains(&item.text) {
-                return Err(reserved(item, "a word of the language"));
-            }
-        }
-        Ok(())
+    fn check_free(head: &Head<'_>) -> Result<(), FormulaError> {
+        let name = meaning_in_language(head.name.text).map(|meaning| (&head.name, meaning));
+        let parameter = || head.parameters.iter().find_map(|item| Some((item, meaning_of_word(item.text)?)));
+        name.or_else(parameter).map_or(Ok(()), |(item, meaning)| Err(reserved(item, meaning)))
+    }
+}
+
+/// What the language itself means by `name`, which no definition can take then.
+pub(super) fn meaning_in_language(name: &str) -> Option<&'static str> {
+    let is_axis = Axis::ALL.iter().any(|axis| axis.name() == name);
+    if is_axis { Some("a coordinate") } else { meaning_of_word(name) }
+}
+
+/// The same of names that no parameter of a function can take either.
+fn meaning_of_word(name: &str) -> Option<&'static str> {
+    let is_derived = || prelude().iter().any(|definition| definition.name == name);
+    if constant(name).is_some() || SYMBOLS.contains(&name) {
+        Some("a constant of the language")
+    } else if Function::operation(name).is_some() || is_derived() {
+        Some("a function of the language")
+    } else {
+        KEYWORDS.contains(&name).then_some("a word of the language")
     }
 }
 
