@@ -65,10 +65,11 @@ impl Function {
         operation.map(Self::Operation).or_else(|| fold().map(Self::Fold))
     }
 
-    /// Every name by which an operation is called.
+    /// Every name by which an operation is called, the usual ones before others of the same operations.
     pub(super) fn operation_names() -> impl Iterator<Item = &'static str> {
-        let operations = Operation::all().flat_map(|operation| operation.calls().iter().copied());
-        operations.chain(FOLDS.into_iter().map(Operation::name))
+        let usual = Operation::all().filter_map(|operation| operation.calls().first());
+        let others = Operation::all().flat_map(|operation| operation.calls().iter().skip(1));
+        usual.copied().chain(FOLDS.into_iter().map(Operation::name)).chain(others.copied())
     }
 
     /// The name by which it is printed; `definitions` are those of the formula.

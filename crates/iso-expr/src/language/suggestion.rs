@@ -16,7 +16,9 @@ pub(super) fn suggestion(
     if name.chars().count() > LONGEST_NAME {
         return None;
     }
-    let values: Vec<&str> = parameters.keys().copied().chain(scope.values()).collect();
+    let mut values: Vec<&str> = parameters.keys().copied().collect();
+    values.sort_unstable();
+    values.extend(scope.values());
     let functions = scope.functions();
     let known: Vec<&str> = values.iter().chain(&functions).copied().collect();
     let as_case = || known.iter().find(|other| other.to_lowercase() == name.to_lowercase());
@@ -84,7 +86,7 @@ fn functions_first(name: &str, is_called: bool, values: &[&str], functions: &[&s
     })
 }
 
-/// The known name of several letters that the fewest slips turn into `name`, if they are few for its length.
+/// The first known name of several letters that the fewest slips turn into `name`, if they are few for its length.
 pub(super) fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
     let length = name.chars().count();
     let allowed = if length <= 1 || length > LONGEST_NAME { 0 } else { (length / 3).clamp(1, 3) };
@@ -93,7 +95,7 @@ pub(super) fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> O
         .filter(|other| lengths.contains(&other.chars().count()))
         .map(|other| (slips(name, other), other))
         .filter(|&(slips, _)| slips <= allowed)
-        .min()
+        .min_by_key(|&(slips, _)| slips)
         .map(|(_, other)| other)
 }
 
@@ -135,6 +137,18 @@ mod tests {
             assert_eq!(slips(a, b), count, "{a} {b}");
             assert_eq!(slips(b, a), count, "{b} {a}");
         }
+    }
+
+    #[test]
+    fn of_names_that_are_equally_near_the_usual_ones_are_meant() {
+        for (formula, meant) in
+            [("sen(x) = y", "`sin`"), ("sun(x) = y", "`sin`"), ("arcsen(x) = y", "`arcsin`")]
+        {
+            let help = crate::Ast::parse(formula).unwrap_err().help.unwrap();
+            assert!(help.contains(meant), "{formula}: {help}");
+        }
+        assert_eq!(nearest("aa", ["ab", "ac"].into_iter()), Some("ab"));
+        assert_eq!(nearest("aa", ["ac", "ab"].into_iter()), Some("ac"));
     }
 
     #[test]
