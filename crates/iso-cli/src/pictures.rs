@@ -8,7 +8,7 @@ use iso_render::{ImageFormat, Layers, Picture, Size, Status};
 use crate::failure::Failure;
 use crate::flags::LayerFlags;
 use crate::output::{Destination, OutputFile, is_standard_output, to_standard_output};
-use crate::table::{digits, write_row};
+use crate::table::{Digits, write_row};
 
 /// The files that a picture is written to, all of them writable as far as can be known.
 pub(crate) struct PictureFiles {
@@ -204,19 +204,34 @@ fn has_extension(path: &Path, extension: &str) -> bool {
 /// A row for each pixel, rows of the picture from top to bottom.
 fn write_points(picture: &Picture, writer: &mut dyn Write) -> io::Result<()> {
     write_row(writer, ["column", "row", "status", "t", "x", "y", "z", "nx", "ny", "nz"])?;
-    let (width, height) = (picture.size.width(), picture.size.height());
-    for (row, column) in (0..height).flat_map(|row| (0..width).map(move |column| (row, column))) {
-        let pixel = picture.size.offset(column, row);
-        let (point, normal) = (picture.points.get(pixel), picture.normals.get(pixel));
-        let status = picture.statuses[pixel];
-        let head = [column.to_string(), row.to_string(), status_name(status).to_owned()];
-        let mut numbers = [picture.depth.get(pixel), point.x, point.y, point.z].map(digits).to_vec();
-        numbers.extend(<[f32; 3]>::from(normal).map(digits));
-        if status == Status::Unfinished {
-            numbers.fill(digits(f64::NAN));
+    // There may be a billion pixels: their rows are written into memory that is kept.
+    let mut lines = Vec::new();
+    for row in 0..picture.size.height() {
+        lines.clear();
+        for column in 0..picture.size.width() {
+            write_pixel(picture, column, row, &mut lines)?;
         }
-        write_row(writer, head.into_iter().chain(numbers))?;
+        writer.write_all(&lines)?;
     }
+    Ok(())
+}
+
+fn write_pixel(picture: &Picture, column: u32, row: u32, lines: &mut Vec<u8>) -> io::Result<()> {
+    let pixel = picture.size.offset(column, row);
+    let status = picture.statuses[pixel];
+    write!(lines, "{column},{row},{}", status_name(status))?;
+    if status == Status::Unfinished {
+        lines.extend_from_slice(b",nan,nan,nan,nan,nan,nan,nan\n");
+        return Ok(());
+    }
+    let (point, normal) = (picture.points.get(pixel), picture.normals.get(pixel));
+    for number in [picture.depth.get(pixel), point.x, point.y, point.z] {
+        write!(lines, ",{}", Digits(number))?;
+    }
+    for number in <[f32; 3]>::from(normal) {
+        write!(lines, ",{}", Digits(number))?;
+    }
+    lines.push(b'\n');
     Ok(())
 }
 

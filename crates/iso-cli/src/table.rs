@@ -6,7 +6,7 @@
 #[cfg(test)]
 mod property;
 
-use std::fmt::{Display, LowerExp};
+use std::fmt::{self, Display, Formatter, LowerExp};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
@@ -284,16 +284,26 @@ where
     writer.write_all(b"\n")
 }
 
-/// The shortest digits that read back to the same float; `nan`, `inf` and `-inf` for what has no digits.
-pub(crate) fn digits<T: Copy + Into<f64> + Display + LowerExp>(value: T) -> String {
-    let magnitude = value.into().abs();
-    if magnitude.is_nan() {
-        "nan".to_owned()
-    } else if magnitude != 0.0 && !(1e-5..1e16).contains(&magnitude) && magnitude.is_finite() {
-        format!("{value:e}")
-    } else {
-        format!("{value}")
+/// A float by the shortest digits that read back to it; `nan`, `inf` and `-inf` for what has no digits.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Digits<T>(pub(crate) T);
+
+impl<T: Copy + Into<f64> + Display + LowerExp> Display for Digits<T> {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        let magnitude = self.0.into().abs();
+        if magnitude.is_nan() {
+            formatter.write_str("nan")
+        } else if magnitude != 0.0 && !(1e-5..1e16).contains(&magnitude) && magnitude.is_finite() {
+            LowerExp::fmt(&self.0, formatter)
+        } else {
+            Display::fmt(&self.0, formatter)
+        }
     }
+}
+
+/// [`Digits`] as a field of a table.
+pub(crate) fn digits<T: Copy + Into<f64> + Display + LowerExp>(value: T) -> String {
+    Digits(value).to_string()
 }
 
 #[cfg(test)]
