@@ -113,9 +113,38 @@ fn a_formula_without_a_command_is_told_which() {
 #[test]
 fn tips_tell_how_formulas_and_boxes_are_written() {
     let case = Case::new();
-    for parts in ["render x^2 + y^2 = 1", "explain x -y^2", "eval x y"] {
+    for parts in [
+        "render x^2 + y^2 = 1",
+        "explain x -y^2",
+        "eval x y",
+        "report --grids 30 x + y",
+        "report --methods grid x^2 + 1",
+    ] {
         let parts: Vec<_> = parts.split(' ').collect();
         case.run(&parts).exits(2).mentions("tip: a formula stands in quotes");
+    }
+    for line in [
+        "stress shell_1e-6",
+        "completions bash foo",
+        "explain x -q",
+        "eval x --at 1,2,3 -a",
+        "engines --nonsense",
+        "trace x --ray 0,0,0,1,0,0 --nonsense",
+        "engines --sizes 3 -q",
+    ] {
+        let run = case.run(&line.split(' ').collect::<Vec<_>>()).exits(2).mentions("unexpected argument");
+        let said = run.stderr();
+        let wrong = ["quotes", "as a value", "commas"];
+        assert!(wrong.iter().all(|tip| !said.contains(tip)), "{line}: {said}");
+    }
+    for (line, list) in [
+        ("engines --sizes 3 10 30", "--sizes 3,10"),
+        ("engines --sides 64, 128", "--sides 64,128"),
+        ("report x --grids 30 60", "--grids 30,60"),
+        ("explain x --section plan tree", "--section plan,tree"),
+    ] {
+        let tip = format!("tip: a list is separated by commas: {list}\n");
+        case.run(&line.split(' ').collect::<Vec<_>>()).exits(2).mentions(&tip);
     }
     case.run(&["render", "x", "--box=-1,1,-1,1,-1,1"]).exits(2).mentions("the order is xmin,ymin,zmin");
     case.run(&["render", "x", "--sizes", "5"]).exits(2).mentions("'--size'");

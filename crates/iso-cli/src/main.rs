@@ -33,6 +33,7 @@ mod summary;
 mod table;
 mod values;
 
+use std::env;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -41,7 +42,10 @@ use failure::Failure;
 use flags::{Command, Flags};
 
 fn main() -> ExitCode {
-    let flags = Flags::try_parse().unwrap_or_else(|error| flags::with_tip(error).exit());
+    let flags = Flags::try_parse().unwrap_or_else(|error| {
+        let words: Vec<String> = env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
+        flags::with_tip(error, &words).exit()
+    });
     match run(flags.command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) if failure.is_closed_pipe() => ExitCode::SUCCESS,

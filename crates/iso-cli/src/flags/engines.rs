@@ -18,17 +18,22 @@ use crate::values;
 #[command(allow_negative_numbers = true, after_help = EXAMPLES)]
 pub(crate) struct EnginesFlags {
     /// What the formulas are made of
-    #[arg(long, value_name = "FAMILY,...", value_delimiter = ',', value_enum, default_values = ["blobs", "balls"])]
+    #[arg(long, value_name = "FAMILY,...", value_delimiter = ',', value_enum, default_value = "blobs,balls")]
     pub(crate) families: Vec<Family>,
 
     /// About how many operations the formulas have
     #[arg(long, value_name = "N,...", value_delimiter = ',')]
-    #[arg(default_values_t = [3, 10, 30, 100, 300, 1000, 3000, 10_000])]
+    #[arg(default_value = "3,10,30,100,300,1000,3000,10000")]
     #[arg(value_parser = values::whole(1..=50_000_u32))]
     pub(crate) sizes: Vec<u32>,
 
     /// Width and height of the pictures
-    #[arg(long, value_name = "PIXELS,...", value_delimiter = ',', default_values_t = [64, 128, 256, 512, 1024, 2048, 4096])]
+    #[arg(
+        long,
+        value_name = "PIXELS,...",
+        value_delimiter = ',',
+        default_value = "64,128,256,512,1024,2048,4096"
+    )]
     #[arg(value_parser = values::whole(1..=16_384_u32))]
     pub(crate) sides: Vec<u32>,
 

@@ -15,6 +15,7 @@ mod report;
 mod sequence;
 mod stress;
 mod tables;
+mod tip;
 mod trace;
 
 pub(crate) use bench::BenchFlags;
@@ -35,10 +36,10 @@ pub(crate) use report::{AxesFlags, ReportFlags, SuiteName};
 pub(crate) use sequence::SequenceFlags;
 pub(crate) use stress::StressFlags;
 pub(crate) use tables::TableFlags;
+pub(crate) use tip::with_tip;
 pub(crate) use trace::TraceFlags;
 
-use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{Parser, Subcommand};
+use clap::{Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
 /// See F(x, y, z) = C.
@@ -99,23 +100,6 @@ Examples:
   iso completions bash > ~/.local/share/bash-completion/completions/iso
   iso completions zsh > ~/.zfunc/_iso
   iso completions fish > ~/.config/fish/completions/iso.fish";
-
-/// The error with what to do about it where a formula stands in place of a command, or is parted by a shell.
-pub(crate) fn with_tip(mut error: clap::Error) -> clap::Error {
-    let is_flag = |value: &ContextValue| value.to_string().starts_with("--");
-    let is_part = error.get(ContextKind::InvalidArg).is_some_and(|value| !is_flag(value));
-    let tip = match error.kind() {
-        ErrorKind::InvalidSubcommand if error.get(ContextKind::SuggestedSubcommand).is_none() => {
-            "to draw a formula, write 'iso render FORMULA'"
-        }
-        ErrorKind::UnknownArgument if is_part => {
-            "a formula stands in quotes, so that the shell takes it for one word: iso render 'x^2 + y^2 = 1'"
-        }
-        _ => return error,
-    };
-    error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
-    error
-}
 
 #[cfg(test)]
 mod tests {

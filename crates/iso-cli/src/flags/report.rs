@@ -72,41 +72,41 @@ pub(crate) enum SuiteName {
 pub(crate) struct AxesFlags {
     /// Methods of intersection
     #[arg(long, value_name = "METHOD,...", value_delimiter = ',', value_enum)]
-    #[arg(default_values = ["certified", "grid", "octree", "direct"])]
+    #[arg(default_value = "certified,grid,octree,direct")]
     pub(crate) methods: Vec<MethodName>,
 
     /// Engines
-    #[arg(long, value_name = "ENGINE,...", value_delimiter = ',', value_enum, default_values = ["jit", "interp"])]
+    #[arg(long, value_name = "ENGINE,...", value_delimiter = ',', value_enum, default_value = "jit,interp")]
     pub(crate) engines: Vec<EngineName>,
 
     /// Cells along every axis, for the methods grid and octree
-    #[arg(long, value_name = "N,...", value_delimiter = ',', default_values_t = [8, 15, 30, 60])]
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "8,15,30,60")]
     #[arg(value_parser = values::whole(1..=GridSettings::MOST_CELLS))]
     pub(crate) grids: Vec<u32>,
 
     /// Parts into which a cell beside the surface is cut, beside the default of each grid: 3 up to 20 cells, else 2
-    #[arg(long, value_name = "M,...", value_delimiter = ',', default_values_t = [1, 2, 3])]
+    #[arg(long, value_name = "M,...", value_delimiter = ',', default_value = "1,2,3")]
     #[arg(value_parser = values::whole(1..=GridSettings::LARGEST_REFINEMENT))]
     pub(crate) refines: Vec<u32>,
 
     /// Steps between samples, in parts of a cell; the method direct steps as for a grid of 30
     #[arg(long, value_name = "STEP,...", value_delimiter = ',', value_parser = values::step)]
-    #[arg(default_values = ["0.05", "0.01"])]
+    #[arg(default_value = "0.05,0.01")]
     pub(crate) steps: Vec<f64>,
 
     /// Root finders, for the methods that sample
     #[arg(long, value_name = "FINDER,...", value_delimiter = ',', value_enum)]
-    #[arg(default_values = ["bisection", "itp", "newton"])]
+    #[arg(default_value = "bisection,itp,newton")]
     pub(crate) root_finders: Vec<RootFinderName>,
 
     /// Widths, relative to t, to which roots are narrowed; 0 goes on as far as the method does
     #[arg(long, value_name = "WIDTH,...", value_delimiter = ',', value_parser = values::tolerance)]
-    #[arg(default_values = ["0", "1e-6"])]
+    #[arg(default_value = "0,1e-6")]
     pub(crate) tolerances: Vec<f64>,
 
     /// About how many operations the formulas have on which the engines are compared, beside the given one
     #[arg(long, value_name = "N,...", value_delimiter = ',')]
-    #[arg(default_values_t = [3, 10, 30, 100, 300, 1000, 3000, 10_000])]
+    #[arg(default_value = "3,10,30,100,300,1000,3000,10000")]
     #[arg(value_parser = values::whole(1..=50_000_u32))]
     pub(crate) sizes: Vec<u32>,
 
