@@ -409,7 +409,7 @@ fn smooth_pictures_have_the_size_asked_for() {
     assert_eq!(drawn.iter().sum::<u64>(), 16 * 48 * 32);
     assert_eq!(image::image_dimensions(case.path("iso.png")).unwrap(), (48, 32));
     render(&case, SPHERE, &["--smooth", "2", "--depth", "depth.exr"]).exits(2).mentions("--smooth");
-    render(&case, SPHERE, &["--smooth", "17"]).exits(2).mentions("1 to 16 pixels");
+    render(&case, SPHERE, &["--smooth", "17"]).exits(2).mentions("from 1 to 16");
     case.run(&["render", SPHERE, "--size", "32768x32768", "--smooth", "2"]).exits(2).mentions("--smooth");
 }
 

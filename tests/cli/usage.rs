@@ -85,6 +85,50 @@ fn bad_usage_exits_with_2() {
     assert!(case.names().is_empty(), "{:?}", case.names());
 }
 
+/// Defaults of lists are printed as lists are written.
+#[test]
+fn lists_are_shown_with_commas() {
+    for (command, default) in [
+        ("engines", "[default: 3,10,30,100,300,1000,3000,10000]"),
+        ("engines", "[default: blobs,balls]"),
+        ("report", "[default: certified,grid,octree,direct]"),
+        ("report", "[default: 0,1e-6]"),
+    ] {
+        let help = Case::new().run(&[command, "-h"]).exits(0).stdout();
+        let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(help.contains(default), "{default}: {help}");
+    }
+}
+
+/// Whatever is out of range, the flag is named, and what it takes.
+#[test]
+fn settings_out_of_range_are_answered_with_the_range() {
+    for (setting, range) in [
+        ("--grid 0", "from 1 to 65536"),
+        ("--grid 30,30,65537", "from 1 to 65536"),
+        ("--refine 0", "from 1 to 64"),
+        ("--refine 65", "from 1 to 64"),
+        ("--step 1e-300", "from 1e-6 to 1"),
+        ("--step 2", "from 1e-6 to 1"),
+        ("--accuracy 100", "from 0 to 1"),
+        ("--accuracy 0", "above zero"),
+        ("--tolerance 2", "from 0 to 1"),
+        ("--smooth 17", "from 1 to 16"),
+    ] {
+        let mut words = vec!["render", "x"];
+        words.extend(setting.split(' '));
+        let flag = format!("for '{} <", words[2]);
+        Case::new().run(&words).exits(2).mentions("invalid value").mentions(&flag).mentions(range);
+    }
+    for (method, grid) in [("grid", "1000"), ("octree", "60000")] {
+        Case::new()
+            .run(&["render", "x^2+y^2+z^2=1", "--method", method, "--grid", grid, "--box", "-1,1"])
+            .exits(2)
+            .mentions("cells; at most")
+            .mentions("help: choose a smaller --grid");
+    }
+}
+
 /// Numbers below zero are told to be out of range, and not taken for options.
 #[test]
 fn numbers_below_zero_are_answered_with_the_range() {

@@ -140,6 +140,7 @@ impl From<GridError> for Failure {
     fn from(error: GridError) -> Self {
         match error {
             GridError::Compile(error) => Self::Compile(error),
+            GridError::TooManyCells { .. } => Self::usage(error.to_string(), "choose a smaller --grid"),
             other => Self::Usage { problem: other.to_string(), help: None },
         }
     }

@@ -12,6 +12,8 @@ use iso_grid::{GridSettings, Ray, Region};
 use iso_render::{Background, Size, Smoothing};
 use serde::Serialize;
 
+use crate::table::Digits;
+
 /// A finite number, or a formula of one: `2pi`, `1/3`.
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
     let value = text.trim().parse().ok().or_else(|| constant(text));
@@ -84,18 +86,17 @@ pub(crate) fn ray(text: &str) -> Result<Ray, String> {
     if is_still { Err("the direction is zero".to_owned()) } else { Ok(Ray { origin, direction }) }
 }
 
-/// `n` for the same count along every axis, or `i,j,k`.
-pub(crate) fn counts(text: &str) -> Result<[u32; 3], String> {
-    let counts = text.split(',').map(count).collect::<Result<Vec<_>, _>>()?;
-    match counts[..] {
-        [same] => Ok([same; 3]),
-        [i, j, k] => Ok([i, j, k]),
-        ref others => Err(format!("expected 1 count or 3 (i,j,k), found {}", others.len())),
+/// `n` for the same count along every axis, or `i,j,k`, all of them in a range.
+pub(crate) fn counts(range: RangeInclusive<u32>) -> impl Fn(&str) -> Result<[u32; 3], String> + Clone {
+    let count = whole(range);
+    move |text| {
+        let counts = text.split(',').map(&count).collect::<Result<Vec<_>, _>>()?;
+        match counts[..] {
+            [same] => Ok([same; 3]),
+            [i, j, k] => Ok([i, j, k]),
+            ref others => Err(format!("expected 1 count or 3 (i,j,k), found {}", others.len())),
+        }
     }
-}
-
-fn count(text: &str) -> Result<u32, String> {
-    whole(0..=u32::MAX)(text)
 }
 
 fn numbers(text: &str) -> Result<Vec<f64>, String> {
@@ -145,22 +146,31 @@ pub(crate) fn background(text: &str) -> Result<Background, String> {
 
 /// A step between samples in parts of a cell.
 pub(crate) fn step(text: &str) -> Result<f64, String> {
-    let (step, allowed) = (finite(text)?, GridSettings::LEAST_STEP..=1.0);
-    let error = || format!("expected a step from {} to {}, found {step}", allowed.start(), allowed.end());
-    if allowed.contains(&step) { Ok(step) } else { Err(error()) }
+    within("a step", GridSettings::LEAST_STEP..=1.0, text)
 }
 
 /// The width, relative to t, to which roots are narrowed.
 pub(crate) fn tolerance(text: &str) -> Result<f64, String> {
-    let tolerance = finite(text)?;
-    let error = || format!("expected a width from 0 to 1, found {tolerance}");
-    if (0.0..=1.0).contains(&tolerance) { Ok(tolerance) } else { Err(error()) }
+    within("a width", 0.0..=1.0, text)
+}
+
+/// The width, relative to t, to which roots are enclosed.
+pub(crate) fn accuracy(text: &str) -> Result<f64, String> {
+    positive(text)?;
+    tolerance(text)
+}
+
+fn within(what: &str, range: RangeInclusive<f64>, text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    let [least, most, found] = [*range.start(), *range.end(), value].map(Digits);
+    let error = || format!("expected {what} from {least} to {most}, found {found}");
+    if range.contains(&value) { Ok(value) } else { Err(error()) }
 }
 
 /// How many pixels, across and down, are averaged.
 pub(crate) fn smoothing(text: &str) -> Result<Smoothing, String> {
-    Smoothing::new(count(text)?)
-        .ok_or_else(|| format!("1 to {} pixels can be averaged each way", Smoothing::MOST))
+    let count = whole(1..=Smoothing::MOST)(text)?;
+    Ok(Smoothing::new(count).expect("the count is in range"))
 }
 
 /// A time: a number above zero with its unit, `ms`, `s`, `m` or `h`; seconds where there is none.
@@ -265,9 +275,10 @@ mod tests {
 
     #[test]
     fn counts_are_one_or_three() {
+        let counts = counts(1..=40);
         assert_eq!(counts("30"), Ok([30, 30, 30]));
         assert_eq!(counts("30,30, 20"), Ok([30, 30, 20]));
-        for wrong in ["", "-1", "1,2", "1.5", "99999999999"] {
+        for wrong in ["", "-1", "0", "41", "30,0,30", "1,2", "1.5", "99999999999"] {
             assert!(counts(wrong).is_err(), "{wrong}");
         }
     }

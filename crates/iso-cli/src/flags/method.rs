@@ -1,7 +1,7 @@
 //! Flags that say where and how the surface is looked for.
 
 use clap::{Args, ValueEnum};
-use iso_grid::{Region, RootFinder};
+use iso_grid::{GridSettings, Region, RootFinder};
 
 use crate::values;
 
@@ -28,15 +28,15 @@ pub(crate) struct MethodFlags {
     pub(crate) method: MethodName,
 
     /// Cells of the grid along every axis, or i,j,k [default: 30]
-    #[arg(long, value_name = "N", value_parser = values::counts)]
+    #[arg(long, value_name = "N", value_parser = values::counts(1..=GridSettings::MOST_CELLS))]
     pub(crate) grid: Option<[u32; 3]>,
 
     /// Parts into which a cell beside the surface is cut, along every axis or i,j,k [default: 2; 3 for grids up to 20]
-    #[arg(long, value_name = "M", value_parser = values::counts)]
+    #[arg(long, value_name = "M", value_parser = values::counts(1..=GridSettings::LARGEST_REFINEMENT))]
     pub(crate) refine: Option<[u32; 3]>,
 
     /// The step between samples, in parts of the longest side of a cell [default: 0.05]
-    #[arg(long, value_name = "STEP", value_parser = values::positive)]
+    #[arg(long, value_name = "STEP", value_parser = values::step)]
     pub(crate) step: Option<f64>,
 
     /// How the sampling methods find a root between samples of unlike sign [default: bisection]
@@ -48,7 +48,7 @@ pub(crate) struct MethodFlags {
     pub(crate) tolerance: Option<f64>,
 
     /// The width, relative to t, to which the certified method encloses roots; a coarser one may leave more contacts and near misses open [default: 1e-12]
-    #[arg(long, value_name = "WIDTH", value_parser = values::positive)]
+    #[arg(long, value_name = "WIDTH", value_parser = values::accuracy)]
     pub(crate) accuracy: Option<f64>,
 }
 
