@@ -13,7 +13,7 @@ fn tables_and_plots_are_written_for_every_size() {
         let head = table.headers().unwrap().clone();
         let records: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
         assert_eq!(records.len(), rows, "two families of two formulas");
-        let first_figure = head.iter().position(|column| column.starts_with("interpreter")).unwrap();
+        let first_figure = head.iter().position(|column| column.starts_with("interp_")).unwrap();
         for record in &records {
             assert!(
                 record.iter().skip(first_figure).all(|figure| figure.parse::<f64>().unwrap() > 0.0),

@@ -126,7 +126,7 @@ fn both_engines_are_measured() {
     let text = case.run(&[&["bench", PAPER][..], &flags].concat()).exits(0).stdout();
     assert!(text.contains("interpreter") && text.contains("native code"), "{text}");
     let json = case.run(&[&["bench", PAPER, "--json"][..], &flags].concat()).exits(0).json();
-    for engine in ["interpreter", "native"] {
+    for engine in ["interp", "jit"] {
         for measure in
             ["point_nanoseconds", "batch_nanoseconds", "compile_milliseconds", "picture_milliseconds"]
         {

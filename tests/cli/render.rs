@@ -179,6 +179,22 @@ fn the_report_says_where_the_rays_are() {
     }
 }
 
+/// Engines have one name, that of the command line.
+#[test]
+fn what_programs_read_names_engines_as_they_are_asked_for() {
+    let case = Case::new();
+    for engine in ["jit", "interp"] {
+        let json = render(&case, SPHERE, &["--engine", engine, "--json"]).exits(0).json();
+        assert_eq!(json["engine"], engine);
+    }
+    let stress = case.run(&["stress", "--case", "double_sphere", "--size", "2x2", "--json"]).exits(0).json();
+    let runs = stress[0]["runs"].as_array().unwrap();
+    assert!(
+        ["jit", "interp"].iter().all(|engine| runs.iter().any(|run| run["engine"] == *engine)),
+        "{stress}"
+    );
+}
+
 #[test]
 fn the_picture_is_the_same_on_any_threads_and_engine() {
     let case = Case::new();

@@ -75,12 +75,16 @@ pub(crate) fn threads(flag: &ThreadsFlag) -> Result<ThreadPool, Failure> {
 #[cfg(all(test, not(feature = "jit")))]
 mod tests {
     use super::*;
+    use crate::flags::name_of;
 
     #[test]
     fn a_program_without_native_code_says_so() {
         let failure = engine(EngineName::Jit).err().expect("there is no native code");
         assert_eq!((failure.exit_code(), EngineName::DEFAULT), (2, EngineName::Interp));
         assert!(failure.to_string().contains("without native code"), "{failure}");
-        assert_eq!(engine(EngineName::DEFAULT).expect("the interpreter is there").name(), "interpreter");
+        assert_eq!(
+            engine(EngineName::DEFAULT).expect("the interpreter is there").name(),
+            name_of(EngineName::Interp)
+        );
     }
 }

@@ -6,12 +6,12 @@ use iso_grid::{
 };
 
 use crate::failure::Failure;
-use crate::flags::{MethodFlags, MethodName};
+use crate::flags::{MethodFlags, MethodName, name_of};
 
 /// The method that `flags` name. A setting that the method does not have is an error.
 pub(crate) fn method(flags: &MethodFlags) -> Result<Method, Failure> {
     let refuse = |flag: &str, is_given: bool, methods: &str| {
-        let method = flags.method.name();
+        let method = name_of(flags.method);
         if !is_given {
             return Ok(());
         }

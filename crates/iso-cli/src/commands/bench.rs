@@ -167,7 +167,9 @@ struct Report {
     width: u32,
     height: u32,
     runs: usize,
+    #[serde(rename = "interp")]
     interpreter: Measured,
+    #[serde(rename = "jit")]
     native: Measured,
     gain: Gain,
     break_even_pixels: Option<f64>,

@@ -6,7 +6,7 @@ use std::io::Write;
 use crate::clock::{Deadline, milliseconds};
 use crate::engine::threads;
 use crate::failure::Failure;
-use crate::flags::EnginesFlags;
+use crate::flags::{EnginesFlags, name_of};
 use crate::output::{OutputFile, to_standard_output};
 use crate::progress::Progress;
 use crate::scaling::{
@@ -42,7 +42,7 @@ pub(crate) fn run(flags: EnginesFlags) -> Result<(), Failure> {
             ("evaluations", evaluation_plot(&evaluations, family)),
             ("pictures", gain_plot(&pictures, family)),
         ] {
-            file(&format!("{name}-{}.svg", family.name()))?
+            file(&format!("{name}-{}.svg", name_of(family)))?
                 .write(|writer| writer.write_all(svg.as_bytes()))?;
         }
     }

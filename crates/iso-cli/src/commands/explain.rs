@@ -4,7 +4,6 @@ use std::io::{self, Write};
 use std::sync::Arc;
 use std::time::Duration;
 
-use clap::ValueEnum;
 use iso_expr::{Interpreter, Program};
 use iso_grid::Surface;
 use serde::Serialize;
@@ -12,7 +11,7 @@ use serde_json::{Map, Value};
 
 use crate::clock::{milliseconds, timed};
 use crate::failure::Failure;
-use crate::flags::{ExplainFlags, Section};
+use crate::flags::{ExplainFlags, Section, name_of};
 use crate::formula::{Source, Text, minus_level};
 use crate::hints::{Hint, hints};
 use crate::output::to_standard_output;
@@ -25,14 +24,14 @@ pub(crate) fn run(flags: ExplainFlags) -> Result<(), Failure> {
     to_standard_output(|writer| {
         if flags.sections.json {
             let object: Map<String, Value> = shown()
-                .map(|(section, shown)| Ok((section.name(), serde_json::to_value(shown)?)))
+                .map(|(section, shown)| Ok((name_of(*section), serde_json::to_value(shown)?)))
                 .collect::<serde_json::Result<_>>()?;
             serde_json::to_writer_pretty(&mut *writer, &object)?;
             return writeln!(writer);
         }
         shown().try_for_each(|(section, shown)| match shown {
             Shown::Plan(plan) => plan.write(writer),
-            Shown::Stage(stage) => stage.write(writer, &section.name()),
+            Shown::Stage(stage) => stage.write(writer, &name_of(*section)),
         })
     })
 }
@@ -42,13 +41,6 @@ impl ExplainFlags {
     fn shows(&self, section: Section) -> bool {
         let named = &self.sections.sections;
         named.is_empty() || named.contains(&section)
-    }
-}
-
-impl Section {
-    /// The section's name on the command line and in reports.
-    fn name(self) -> String {
-        self.to_possible_value().expect("no section is hidden").get_name().to_owned()
     }
 }
 

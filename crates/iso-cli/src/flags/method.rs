@@ -83,18 +83,6 @@ pub(crate) enum MethodName {
     Direct,
 }
 
-impl MethodName {
-    /// The method's name on the command line.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Certified => "certified",
-            Self::Grid => "grid",
-            Self::Octree => "octree",
-            Self::Direct => "direct",
-        }
-    }
-}
-
 /// The root finders of the sampling methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum RootFinderName {
@@ -128,12 +116,4 @@ pub(crate) enum EngineName {
 impl EngineName {
     /// The fastest engine that this program is built with.
     pub(crate) const DEFAULT: Self = if cfg!(feature = "jit") { Self::Jit } else { Self::Interp };
-
-    /// The engine's name on the command line.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Jit => "jit",
-            Self::Interp => "interp",
-        }
-    }
 }

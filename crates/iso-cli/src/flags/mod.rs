@@ -80,6 +80,11 @@ pub(crate) enum Command {
     },
 }
 
+/// The name of a value on the command line, and in all that programs read.
+pub(crate) fn name_of(value: impl ValueEnum) -> String {
+    value.to_possible_value().expect("no value is hidden").get_name().to_owned()
+}
+
 const LONG_ABOUT: &str = "\
 iso draws the surface on which a formula F(x, y, z) has the value C. It compiles the formula to native code, \
 follows a ray for every pixel, and by default proves what it draws.";

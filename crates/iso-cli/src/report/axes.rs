@@ -3,7 +3,7 @@
 use iso_grid::{Certified, GridSettings, Method, RootFinder, RootFinding};
 use serde::Serialize;
 
-use crate::flags::{EngineName, MethodName};
+use crate::flags::{EngineName, MethodName, name_of};
 
 /// What is varied. No list is empty.
 #[derive(Clone, Debug)]
@@ -31,7 +31,7 @@ pub(crate) struct Setting {
     pub(crate) name: &'static str,
     /// The engine's name.
     #[serde(rename = "engine")]
-    pub(crate) engine_name: &'static str,
+    pub(crate) engine_name: String,
     /// N: cells along every axis, for methods that have them.
     pub(crate) grid: Option<u32>,
     /// M: parts into which a cell is cut when it is examined again, for methods that do so.
@@ -66,7 +66,7 @@ impl Setting {
         Self {
             flags: flags(engine, method, cells, step),
             name: method.name(),
-            engine_name: engine.name(),
+            engine_name: name_of(engine),
             grid: cells.map(|settings| settings.cells[0]),
             refine: cells.map(|settings| settings.refinement[0]),
             step,
@@ -88,7 +88,7 @@ impl Setting {
 
 /// What is not as it is unless told otherwise.
 fn flags(engine: EngineName, method: Method, cells: Option<GridSettings>, step: Option<f64>) -> String {
-    let mut flags = format!("--method {} --engine {}", method.name(), engine.name());
+    let mut flags = format!("--method {} --engine {}", method.name(), name_of(engine));
     if let Some(settings) = cells {
         flags.push_str(&format!(" --grid {}", settings.cells[0]));
         if settings.refinement != GridSettings::new(settings.cells).refinement {

@@ -70,7 +70,7 @@ fn row(formula: &str, run: &Run) -> Vec<String> {
     let mut row = vec![
         formula.to_owned(),
         setting.name.to_owned(),
-        setting.engine_name.to_owned(),
+        setting.engine_name.clone(),
         count(setting.grid),
         count(setting.refine),
         number(setting.step),

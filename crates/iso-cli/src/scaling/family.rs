@@ -28,14 +28,6 @@ pub(crate) struct Formula {
 const OPERATIONS_OF_A_PART: usize = 10;
 
 impl Family {
-    /// The family's name on the command line.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Blobs => "blobs",
-            Self::Balls => "balls",
-        }
-    }
-
     /// Where its surfaces are.
     pub(crate) fn region() -> Region {
         Region::new(DVec3::splat(-1.25), DVec3::splat(1.25)).expect("the box has room")

@@ -3,6 +3,7 @@
 use super::{Evaluation, Family, PictureTimes};
 use crate::chart::{Chart, Line, Mark, Proportions};
 use crate::clock::Spread;
+use crate::flags::name_of;
 
 /// The colours of kinds of evaluation, which can be told apart in print and by the colour-blind (Okabe and Ito 2008).
 const ALONE: &str = "#d55e00";
@@ -18,7 +19,7 @@ const GROWING: [&str; 8] =
 pub(crate) fn evaluation_plot(evaluations: &[Evaluation], family: Family) -> String {
     let of_family = || evaluations.iter().filter(move |evaluation| evaluation.family == family);
     let mut chart = Chart {
-        title: format!("One evaluation against the size of a formula: {}", family.name()),
+        title: format!("One evaluation against the size of a formula: {}", name_of(family)),
         x_name: "operations",
         y_name: "nanoseconds of an evaluation; microseconds of compiling",
         legend: vec![
@@ -68,7 +69,7 @@ pub(crate) fn gain_plot(pictures: &[PictureTimes], family: Family) -> String {
     sides.sort_by(f64::total_cmp);
     sides.dedup();
     let mut chart = Chart {
-        title: format!("What compiling pays: {}", family.name()),
+        title: format!("What compiling pays: {}", name_of(family)),
         x_name: "side of the picture in pixels",
         y_name: "time of the interpreter ÷ time of native code",
         hint: "dashed: both take as long",

@@ -26,7 +26,7 @@ pub struct Interpreter;
 
 impl Engine for Interpreter {
     fn name(&self) -> &'static str {
-        "interpreter"
+        "interp"
     }
 
     fn point(&self, program: &Program) -> Result<Arc<dyn PointKernel>, CompileError> {
