@@ -90,6 +90,41 @@ fn the_plan_says_why() {
     assert!(text.contains("fit                 yes no box is given"), "{text}");
 }
 
+/// What no picture could be written to is refused as when it is drawn; the disk is left alone.
+#[test]
+fn names_are_checked_as_those_of_pictures_are() {
+    let case = Case::new();
+    let explain = |flags: &[&str]| case.run(&[&["explain", PAPER, "--section", "plan"], flags].concat());
+    for (flags, problem) in [
+        (&["-o", "foo.bar"][..], "names no picture format"),
+        (&["--depth", "d.png"], "--depth writes .exr files"),
+        (&["--points", "p.txt"], "--points writes .csv files"),
+        (&["-o", "a.jpg", "--background", "none"], "this format has no transparency"),
+        (&["--background", "none", "--depth", "d.exr"], "no shaded picture is written"),
+    ] {
+        let said = explain(flags).exits(2).mentions(problem).stderr();
+        let drawn = case.run(&[&["render", PAPER], flags].concat()).exits(2);
+        assert_eq!(said, drawn.stderr());
+    }
+    explain(&["-o", "missing/folder/a.png"]).exits(0);
+    assert!(case.names().is_empty());
+}
+
+/// Options that change nothing in a plan are told to be none.
+#[test]
+fn options_without_effect_are_refused() {
+    for flag in [
+        "--time-limit=1s",
+        "--keep-partial",
+        "--threads=1",
+        "--engine=interp",
+        "--show-status",
+        "--colors=gold",
+    ] {
+        Case::new().run(&["explain", PAPER, flag]).exits(2).mentions("unexpected argument");
+    }
+}
+
 #[test]
 fn sections_can_be_chosen() {
     let case = Case::new();

@@ -324,8 +324,11 @@ fn colours_that_cannot_be_drawn_are_refused() {
     ] {
         render(&case, SPHERE, &flags).exits(2).mentions(expected);
     }
-    let run = render(&case, SPHERE, &["--colors", "red", "--depth", "a.exr"]);
-    run.exits(2).mentions("colours are given, but no shaded picture is written");
+    for flags in [&["--colors", "red"][..], &["--background", "red"], &["--show-status"]] {
+        let problem = format!("{} is given, but no shaded picture is written", flags[0]);
+        let flags = [flags, &["--depth", "a.exr"]].concat();
+        render(&case, SPHERE, &flags).exits(2).mentions(&problem);
+    }
     for name in ["a.jpg", "a.gif", "a.bmp", "a.tif"] {
         let run = render(&case, SPHERE, &["--background", "none", "-o", name]);
         run.exits(2).mentions("this format has no transparency");

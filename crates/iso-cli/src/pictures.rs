@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use iso_render::{ImageFormat, Layers, Picture, Size, Status};
 
 use crate::failure::Failure;
-use crate::flags::LayerFlags;
+use crate::flags::{LayerFlags, PaintFlags};
 use crate::output::{Destination, OutputFile, is_standard_output, to_standard_output};
 use crate::table::{Digits, write_row};
 
@@ -40,24 +40,17 @@ impl PictureFiles {
         flags: &LayerFlags,
         rename: &dyn Fn(&Path) -> PathBuf,
     ) -> Result<Self, Failure> {
-        if self::color(flags, STILL).is_none() && flags.look.is_given() {
-            let problem = "colours are given, but no shaded picture is written";
-            return Err(Failure::usage(problem, "name one with -o, or leave them out"));
-        }
+        check_names(flags)?;
         let color = color.map(|path| {
-            let format = if is_standard_output(&path) { ImageFormat::PNG } else { ImageFormat::of(&path)? };
-            check_size(format, flags.size)?;
-            check_transparency(format, flags)?;
+            let format = format(&path, flags)?;
             Ok::<_, Failure>((Destination::new(Some(rename(&path)))?, format))
         });
-        let other = |path: &Option<PathBuf>, extension, flag| {
-            with_extension(path.as_deref().map(rename), extension, flag)
-        };
+        let file = |path: &Option<PathBuf>| path.as_deref().map(rename).map(OutputFile::new).transpose();
         let files = Self {
             color: color.transpose()?,
-            depth: other(&flags.depth, "exr", "--depth")?,
-            normals: other(&flags.normals, "exr", "--normals")?,
-            points: other(&flags.points, "csv", "--points")?,
+            depth: file(&flags.depth)?,
+            normals: file(&flags.normals)?,
+            points: file(&flags.points)?,
         };
         files.check_apart()?;
         Ok(files)
@@ -117,6 +110,44 @@ impl PictureFiles {
     }
 }
 
+/// Refuses names that say other formats than are written there, formats that cannot hold the picture, and a background without one. Does
+/// not look at the disk.
+pub(crate) fn check_names(flags: &LayerFlags) -> Result<(), Failure> {
+    match color(flags, STILL) {
+        Some(path) => format(&path, flags).map(drop)?,
+        None => check_shaded("--background", flags.background.background.is_some())?,
+    }
+    check_extension(flags.depth.as_deref(), "exr", "--depth")?;
+    check_extension(flags.normals.as_deref(), "exr", "--normals")?;
+    check_extension(flags.points.as_deref(), "csv", "--points")
+}
+
+/// Refuses paint where no shaded picture is written.
+pub(crate) fn check_paint(paint: &PaintFlags, flags: &LayerFlags) -> Result<(), Failure> {
+    if color(flags, STILL).is_some() {
+        return Ok(());
+    }
+    check_shaded("--colors", paint.colors.is_some())?;
+    check_shaded("--show-status", paint.show_status)
+}
+
+/// Refuses a flag of shaded pictures where there is none.
+fn check_shaded(flag: &str, is_given: bool) -> Result<(), Failure> {
+    if !is_given {
+        return Ok(());
+    }
+    let problem = format!("{flag} is given, but no shaded picture is written");
+    Err(Failure::usage(problem, "name one with -o, or leave it out"))
+}
+
+/// The format of the shaded picture, if it can hold that.
+fn format(path: &Path, flags: &LayerFlags) -> Result<ImageFormat, Failure> {
+    let format = if is_standard_output(path) { ImageFormat::PNG } else { ImageFormat::of(path)? };
+    check_size(format, flags.size)?;
+    check_transparency(format, flags)?;
+    Ok(format)
+}
+
 /// Refuses a picture that the format cannot hold.
 fn check_size(format: ImageFormat, size: Size) -> Result<(), Failure> {
     let longest = format.longest_side();
@@ -129,7 +160,7 @@ fn check_size(format: ImageFormat, size: Size) -> Result<(), Failure> {
 
 /// Refuses a transparent background that the format cannot keep.
 fn check_transparency(format: ImageFormat, flags: &LayerFlags) -> Result<(), Failure> {
-    if format.has_transparency() || !flags.look.is_transparent() {
+    if format.has_transparency() || !flags.background.is_transparent() {
         return Ok(());
     }
     let problem = "--background none is given, but this format has no transparency";
@@ -142,7 +173,7 @@ pub(crate) fn layers(flags: &LayerFlags) -> Layers {
     let is_shaded = color(flags, STILL).is_some();
     Layers {
         color: is_shaded,
-        coverage: is_shaded && flags.look.is_transparent(),
+        coverage: is_shaded && flags.background.is_transparent(),
         depth: points || flags.depth.is_some(),
         normals: points || flags.normals.is_some(),
         points,
@@ -159,9 +190,7 @@ const ANIMATION: &str = "iso.gif";
 /// The file of all pictures of a sequence, unless each has its own.
 pub(crate) fn animation(flags: &LayerFlags) -> Result<Option<OutputFile>, Failure> {
     let Some(path) = color(flags, ANIMATION).filter(|path| is_animation(path)) else { return Ok(None) };
-    let format = ImageFormat::of(&path)?;
-    check_size(format, flags.size)?;
-    check_transparency(format, flags)?;
+    format(&path, flags)?;
     OutputFile::new(path).map(Some)
 }
 
@@ -188,13 +217,15 @@ fn color(flags: &LayerFlags, usual: &str) -> Option<PathBuf> {
     flags.output.clone().or_else(|| nothing_else.then(|| PathBuf::from(usual)))
 }
 
-fn with_extension(path: Option<PathBuf>, extension: &str, flag: &str) -> Result<Option<OutputFile>, Failure> {
-    let Some(path) = path else { return Ok(None) };
-    if !has_extension(&path, extension) {
-        let problem = format!("{flag} writes .{extension} files, but the name given is {}", path.display());
-        return Err(Failure::Usage { problem, help: None });
+fn check_extension(path: Option<&Path>, extension: &str, flag: &str) -> Result<(), Failure> {
+    match path.filter(|path| !has_extension(path, extension)) {
+        None => Ok(()),
+        Some(path) => {
+            let problem =
+                format!("{flag} writes .{extension} files, but the name given is {}", path.display());
+            Err(Failure::usage(problem, format!("give it a name that ends in .{extension}")))
+        }
     }
-    OutputFile::new(path).map(Some)
 }
 
 fn has_extension(path: &Path, extension: &str) -> bool {

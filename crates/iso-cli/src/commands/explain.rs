@@ -15,6 +15,7 @@ use crate::flags::{ExplainFlags, Section, name_of};
 use crate::formula::{Source, Text, minus_level};
 use crate::hints::{Hint, hints};
 use crate::output::to_standard_output;
+use crate::pictures::check_names;
 use crate::plan::{PlanReport, plan};
 
 /// Shows the plan of a picture and the stages of its formula.
@@ -86,6 +87,7 @@ impl Stage {
 
 fn sections(flags: &ExplainFlags) -> Result<Vec<(Section, Shown)>, Failure> {
     let picture = &flags.picture;
+    check_names(&picture.output)?;
     let source = Source::read(&picture.formula.formula)?;
     let (text, parse_time) = timed(|| source.parse());
     let text = text?;

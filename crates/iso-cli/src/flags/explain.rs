@@ -6,7 +6,7 @@ use super::PictureFlags;
 
 /// Show what a picture takes, and what becomes of its formula on the way to machine code
 ///
-/// The options are those of `iso render`. The plan says what is computed for such a picture, what is left out, and why; nothing is
+/// The options say which picture, as those of `iso render` do. The plan says what is computed for such a picture, what is left out, and why; nothing is
 /// drawn. The stages of the formula come with their sizes and the times that they took.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]

@@ -27,7 +27,7 @@ pub(crate) use explain::KernelName;
 pub(crate) use explain::{ExplainFlags, Section};
 pub(crate) use formula::{FormulaFlags, LevelFlag};
 pub(crate) use limit::LimitFlags;
-pub(crate) use look::LookFlags;
+pub(crate) use look::{BackgroundFlag, PaintFlags};
 pub(crate) use method::{
     EngineFlag, EngineName, MethodFlags, MethodName, RegionFlag, RootFinderName, ThreadsFlag,
 };

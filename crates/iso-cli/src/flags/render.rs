@@ -6,8 +6,8 @@ use clap::Args;
 use iso_render::{Size, Smoothing};
 
 use super::{
-    CameraFlags, EngineFlag, FormulaFlags, LevelFlag, LimitFlags, LookFlags, MethodFlags, SequenceFlags,
-    ThreadsFlag,
+    BackgroundFlag, CameraFlags, EngineFlag, FormulaFlags, LevelFlag, LimitFlags, MethodFlags, PaintFlags,
+    SequenceFlags, ThreadsFlag,
 };
 use crate::values;
 
@@ -21,12 +21,20 @@ pub(crate) struct RenderFlags {
     #[command(flatten)]
     pub(crate) picture: PictureFlags,
     #[command(flatten)]
+    pub(crate) paint: PaintFlags,
+    #[command(flatten)]
+    pub(crate) engine: EngineFlag,
+    #[command(flatten)]
+    pub(crate) threads: ThreadsFlag,
+    #[command(flatten)]
+    pub(crate) limit: LimitFlags,
+    #[command(flatten)]
     pub(crate) sequence: SequenceFlags,
     #[command(flatten)]
     pub(crate) summary: SummaryFlags,
 }
 
-/// A picture, and how it is made.
+/// A picture: all that a plan of it depends on, and from where it is seen.
 #[derive(Debug, Args)]
 pub(crate) struct PictureFlags {
     #[command(flatten)]
@@ -39,12 +47,6 @@ pub(crate) struct PictureFlags {
     pub(crate) camera: CameraFlags,
     #[command(flatten)]
     pub(crate) output: LayerFlags,
-    #[command(flatten)]
-    pub(crate) engine: EngineFlag,
-    #[command(flatten)]
-    pub(crate) threads: ThreadsFlag,
-    #[command(flatten)]
-    pub(crate) limit: LimitFlags,
 }
 
 /// What is written.
@@ -79,7 +81,7 @@ pub(crate) struct LayerFlags {
 
     // The last, for what follows would have its heading.
     #[command(flatten)]
-    pub(crate) look: LookFlags,
+    pub(crate) background: BackgroundFlag,
 }
 
 /// What is said when the picture is done.

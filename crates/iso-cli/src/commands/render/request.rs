@@ -19,7 +19,7 @@ use crate::interruption::Interruption;
 use crate::method::fitted;
 use crate::notes::Drawn;
 use crate::output::{OutputFile, is_standard_output};
-use crate::pictures::animation;
+use crate::pictures::{animation, check_paint};
 use crate::plan::{PlanReport, kernels_compiled};
 use crate::progress::Progress;
 use crate::summary::Summary;
@@ -62,18 +62,19 @@ impl Prepared {
 
 impl Request {
     pub(super) fn resolve(flags: RenderFlags) -> Result<Self, Failure> {
-        let interruption = Interruption::new(&flags.picture.limit);
+        let interruption = Interruption::new(&flags.limit);
         let picture = &flags.picture;
         if flags.summary.json && picture.output.output.as_deref().is_some_and(is_standard_output) {
             let problem = "--json and the picture both go to standard output";
             return Err(Failure::usage(problem, "name a file for the picture, or leave out --json"));
         }
+        check_paint(&flags.paint, &picture.output)?;
         let smoothing = picture.output.smooth;
         let drawn = smoothing
             .drawn(picture.output.size)
             .map_err(|error| Failure::usage(error.to_string(), "choose a smaller --size or --smooth"))?;
         let mut compile = 0.0;
-        let engine = add_to(&mut compile, || engine(picture.engine.engine))?;
+        let engine = add_to(&mut compile, || engine(flags.engine.engine))?;
         let mut shots = shots(&flags, &engine, &interruption.stop())?;
         shots[0].phases.compile += compile;
         let animation = flags.sequence.is_wanted().then(|| animation(&picture.output)).transpose()?.flatten();
@@ -86,10 +87,10 @@ impl Request {
             region: picture.method.region.region,
             smoothing,
             drawn,
-            look: picture.output.look.look(),
+            look: flags.paint.look(picture.output.background),
             animation,
             engine,
-            threads: threads(&picture.threads)?,
+            threads: threads(&flags.threads)?,
             interruption,
             level: picture.level.level,
             formula: flags.picture.formula,
