@@ -29,10 +29,15 @@ fn quiet_runs_say_nothing() {
 #[test]
 fn every_format_can_be_written() {
     let case = Case::new();
-    for extension in ["png", "jpg", "webp", "tif", "bmp", "ppm", "qoi", "PNG"] {
+    for extension in ["png", "jpg", "webp", "tif", "bmp", "ppm", "qoi", "gif", "PNG"] {
         let name = format!("out.{extension}");
         render(&case, SPHERE, &["-o", &name, "-q"]).exits(0);
-        assert!(!case.content(&name).is_empty());
+        let format = image::ImageFormat::from_extension(extension).unwrap();
+        let picture = image::load_from_memory_with_format(&case.content(&name), format).unwrap().into_rgb8();
+        assert_eq!(picture.dimensions(), (48, 32), "{name}");
+        // Light behind, the surface's warm colour before it.
+        let [behind, before] = [(0, 0), (24, 16)].map(|(column, row)| picture.get_pixel(column, row).0);
+        assert!(behind[2] > 200 && before[0] > before[2], "{name}: {behind:?} {before:?}");
     }
 }
 

@@ -117,6 +117,63 @@ mod tests {
         Flags::command().debug_assert();
     }
 
+    /// Where examples of command lines stand, beside the help of each command.
+    const DOCUMENTS: [(&str, &str); 2] = [
+        ("README.md", include_str!("../../../../README.md")),
+        ("docs/usage.md", include_str!("../../../../docs/usage.md")),
+    ];
+
+    /// The words of a command line: what stands in quotes is one, and what follows `#` or goes on to a file is none.
+    fn words(line: &str) -> Vec<String> {
+        let mut words = Vec::new();
+        for (place, part) in line.split('\'').enumerate() {
+            if place % 2 == 1 {
+                words.push(part.to_owned());
+                continue;
+            }
+            let end = part.find(['#', '>']).unwrap_or(part.len());
+            words.extend(part[..end].split_whitespace().map(str::to_owned));
+            if end < part.len() {
+                break;
+            }
+        }
+        words
+    }
+
+    /// What a command line gives to the program.
+    fn arguments(line: &str) -> Option<&str> {
+        ["iso ", "cargo run --release -- "].into_iter().find_map(|name| line.strip_prefix(name))
+    }
+
+    /// The command lines of a text, without the program's name: whole lines, and what stands between backticks but for commands alone.
+    fn command_lines(text: &str) -> impl Iterator<Item = &str> {
+        let lines = text.lines().map(str::trim);
+        let spans = text.lines().flat_map(|line| line.split('`').skip(1).step_by(2));
+        lines.chain(spans).filter_map(arguments).filter(|line| line.contains(' '))
+    }
+
+    /// An option that gets another name must get it everywhere.
+    #[test]
+    fn examples_of_help_and_documents_are_understood() {
+        let command = Flags::command();
+        let helps = [&command].into_iter().chain(command.get_subcommands()).map(|command| {
+            let help = command.get_after_help().expect("every command has examples");
+            (command.get_name().to_owned(), help.to_string())
+        });
+        let documents = DOCUMENTS.map(|(name, text)| (name.to_owned(), text.to_owned()));
+        for (name, text) in helps.chain(documents) {
+            let mut found = 0;
+            for line in command_lines(&text) {
+                found += 1;
+                let line = line.replace("SHELL", "bash").replace("COMMAND", "render");
+                let read = Flags::try_parse_from([vec!["iso".to_owned()], words(&line)].concat());
+                let problem = read.err().filter(clap::Error::use_stderr);
+                assert!(problem.is_none(), "{name}: {line}: {}", problem.unwrap());
+            }
+            assert!(found > 1, "{name}: {found} examples");
+        }
+    }
+
     /// A parser that makes another type than that of its field is found out when the flag is read.
     #[test]
     fn values_are_of_the_types_of_their_flags() {
