@@ -160,6 +160,9 @@ fn both_engines_are_measured() {
     let flags = ["--size", "16", "--runs", "2", "--method", "grid", "--grid", "8"];
     let text = case.run(&[&["bench", PAPER][..], &flags].concat()).exits(0).stdout();
     assert!(text.contains("interpreter") && text.contains("native code"), "{text}");
+    assert!(text.contains("medians of 2 runs (") && text.starts_with("11 operations; "), "{text}");
+    let once = case.run(&["bench", "x", "--size", "1", "--runs", "1"]).exits(0).stdout();
+    assert!(once.contains("medians of 1 run (") && once.starts_with("0 operations; "), "{once}");
     let json = case.run(&[&["bench", PAPER, "--json"][..], &flags].concat()).exits(0).json();
     for engine in ["interp", "jit"] {
         for measure in

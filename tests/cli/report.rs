@@ -210,6 +210,17 @@ fn the_file_that_the_formula_is_read_from_is_not_replaced() {
 }
 
 #[test]
+fn a_file_is_no_folder() {
+    let case = Case::new();
+    case.file("a.png", "");
+    for (command, folder) in [("report", "a.png"), ("report", "a.png/b"), ("engines", "a.png")] {
+        let formula = (command == "report").then_some("x");
+        let words: Vec<&str> = [command].into_iter().chain(formula).chain(["-o", folder]).collect();
+        case.run(&words).exits(2).reports("error: a.png is a file\n  help: name a folder\n");
+    }
+}
+
+#[test]
 fn settings_out_of_range_are_known_before_anything_is_measured() {
     for (flag, value) in
         [("--grids", "0"), ("--grids", "99999999"), ("--steps", "0"), ("--steps", "2"), ("--budget", "soon")]

@@ -55,6 +55,7 @@ fn one_case_is_shown_in_a_table_and_written_to_a_document() {
     let case = Case::new();
     let arguments = ["stress", "--case", "double_sphere", "--size", "8x8", "--markdown", "out.md"];
     let table = case.run(&arguments).exits(0).stdout();
+    assert!(table.contains("\n1 case, 0 with a broken promise;"), "{table}");
     assert!(table.contains("multiple: ") && table.contains("  double_sphere"), "{table}");
     assert_eq!(case.names(), ["out.md"]);
     let document = String::from_utf8(case.content("out.md")).unwrap();

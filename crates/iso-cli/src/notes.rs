@@ -8,6 +8,11 @@ use crate::failure::Failure;
 /// That nothing depends on where one looks.
 const CONSTANT: &str = "F − C does not depend on x, y or z";
 
+/// So many things, which are called `thing` one by one.
+pub(crate) fn counted(count: usize, thing: &str) -> String {
+    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
+}
+
 /// A picture that was drawn.
 pub(crate) struct Drawn<'a> {
     pub(crate) surface: &'a Surface,

@@ -65,6 +65,14 @@ impl Destination {
     }
 }
 
+/// Makes a folder, and those in which it lies, unless they are there.
+pub(crate) fn make_folder(path: &Path) -> Result<(), Failure> {
+    if let Some(file) = path.ancestors().find(|ancestor| ancestor.is_file()) {
+        return Err(Failure::usage(format!("{} is a file", file.display()), "name a folder"));
+    }
+    fs::create_dir_all(path).map_err(|error| Failure::write(path, error))
+}
+
 /// Writes what `fill` writes to standard output.
 pub(crate) fn to_standard_output(fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
     let mut writer = BufWriter::new(io::stdout().lock());

@@ -16,6 +16,7 @@ use crate::flags::BenchFlags;
 use crate::formula::{minus_level, understand};
 use crate::measurement::{Subject, in_turns};
 use crate::method::{fitted_unless, method};
+use crate::notes::counted;
 use crate::output::to_standard_output;
 
 /// Measures both engines.
@@ -180,8 +181,12 @@ impl Report {
         let Self { interpreter, native, gain, .. } = self;
         writeln!(
             writer,
-            "{} operations; method {}, {}x{} pixels; medians of {} runs (least to greatest)\n",
-            self.operations, self.method, self.width, self.height, self.runs
+            "{}; method {}, {}x{} pixels; medians of {} (least to greatest)\n",
+            counted(self.operations, "operation"),
+            self.method,
+            self.width,
+            self.height,
+            counted(self.runs, "run")
         )?;
         writeln!(writer, "{:<26} {:>28} {:>28} {:>8}", "", "interpreter", "native code", "gain")?;
         let mut line = |name: &str, spread: fn(&Measured) -> &Spread, gain: Option<f64>| {

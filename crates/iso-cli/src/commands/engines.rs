@@ -1,13 +1,12 @@
 //! `iso engines`: the interpreter against native code, as formulas and pictures grow.
 
-use std::fs;
 use std::io::Write;
 
 use crate::clock::{Deadline, milliseconds};
 use crate::engine::threads;
 use crate::failure::Failure;
 use crate::flags::{EnginesFlags, name_of};
-use crate::output::{OutputFile, to_standard_output};
+use crate::output::{OutputFile, make_folder, to_standard_output};
 use crate::progress::Progress;
 use crate::scaling::{
     Evaluation, Formula, PictureTimes, evaluation_plot, gain_plot, measure_evaluations, measure_pictures,
@@ -17,7 +16,7 @@ use crate::scaling::{
 /// Measures and writes the folder.
 pub(crate) fn run(flags: EnginesFlags) -> Result<(), Failure> {
     let deadline = Deadline::after(flags.budget);
-    fs::create_dir_all(&flags.output).map_err(|error| Failure::write(&flags.output, error))?;
+    make_folder(&flags.output)?;
     let file = |name: &str| OutputFile::new(flags.output.join(name));
     let (evaluation_file, picture_file) = (file("evaluations.csv")?, file("pictures.csv")?);
     let formulas: Vec<Formula> = flags

@@ -14,6 +14,7 @@ use crate::failure::Failure;
 use crate::flags::{ExplainFlags, Section, name_of};
 use crate::formula::{Source, Text, minus_level};
 use crate::hints::{Hint, hints};
+use crate::notes::counted;
 use crate::output::to_standard_output;
 use crate::pictures::check_names;
 use crate::plan::{PlanReport, plan};
@@ -76,8 +77,8 @@ impl Stage {
     }
 
     fn write(&self, writer: &mut dyn Write, name: &str) -> io::Result<()> {
-        let unit = if self.size == 1 { self.unit.trim_end_matches('s') } else { self.unit };
-        writeln!(writer, "{name}: {} {unit}, {:.3} ms", self.size, self.milliseconds)?;
+        let size = counted(self.size, self.unit.trim_end_matches('s'));
+        writeln!(writer, "{name}: {size}, {:.3} ms", self.milliseconds)?;
         for line in self.text.lines() {
             writeln!(writer, "    {line}")?;
         }

@@ -1,7 +1,6 @@
 //! `iso report`: what error each method and setting buys for what time.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -19,7 +18,7 @@ use crate::flags::{AxesFlags, EngineName, ReportFlags, SuiteName};
 use crate::formula::{Source, file_of, minus_level};
 use crate::measurement::Subject;
 use crate::method::fitted_unless;
-use crate::output::{OutputFile, to_standard_output};
+use crate::output::{OutputFile, make_folder, to_standard_output};
 use crate::progress::Progress;
 use crate::report::{Axes, Case, Report, Sweep, plots, scenes, write_page, write_table};
 use crate::scaling::{Family, Formula};
@@ -145,7 +144,7 @@ impl ReportFiles {
     /// Makes the folder, and sure that its files can be written.
     fn new(folder: &Path, source: Option<PathBuf>) -> Result<Self, Failure> {
         let plots = folder.join("plots");
-        fs::create_dir_all(&plots).map_err(|error| Failure::write(&plots, error))?;
+        make_folder(&plots)?;
         let file = |name: &str| sparing(source.as_deref(), folder.join(name));
         Ok(Self {
             table: file("report.csv")?,

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use super::measure::Measured;
+use crate::notes::counted;
 
 /// Writes a row for each case, grouped by family, the worst first: broken promises, then rays left open, then errors of
 /// the methods that sample. On the left the certified method on native code; on the right the methods that sample, `grid`,
@@ -27,10 +28,10 @@ pub(crate) fn write_table(writer: &mut dyn Write, measured: &[Measured]) -> io::
         writer,
         "\nLeft of the bar, the certified method. Right of it the worst of grid, octree and direct where they found the proven \
          root: |t - t*|, |F - C| in units of its own rounding error, the angle between normals in radians; then the wrong \
-         and missed hits of each.\n\n{} cases, {broken} with a broken promise; {} certified rays agree with the stated truth, {} contradict it; {} doubles and \
+         and missed hits of each.\n\n{}, {broken} with a broken promise; {} certified rays agree with the stated truth, {} contradict it; {} doubles and \
          decorations compared between the engines, {} differ; {} values looked for in enclosures, {} outside; {} slopes, \
          {} unexplained",
-        measured.len(),
+        counted(measured.len(), "case"),
         sum(|case| case.truth.right),
         sum(|case| case.truth.wrong),
         sum(|case| case.engines.compared),
