@@ -21,7 +21,7 @@ pub(crate) struct CameraFlags {
     #[arg(long, value_name = "DEGREES", value_parser = values::finite, conflicts_with = "ortho")]
     pub(crate) fov: Option<f64>,
 
-    /// The distance from the target
+    /// The distance from the target [default: so far that all is seen]
     #[arg(long, value_name = "LENGTH", value_parser = values::positive, conflicts_with = "eye")]
     pub(crate) distance: Option<f64>,
 
@@ -29,7 +29,7 @@ pub(crate) struct CameraFlags {
     #[arg(long)]
     pub(crate) ortho: bool,
 
-    /// The width of the picture in units of x, y and z
+    /// The width of the picture in units of x, y and z [default: so wide that all is seen]
     #[arg(long, value_name = "LENGTH", value_parser = values::positive, requires = "ortho")]
     pub(crate) view_width: Option<f64>,
 

@@ -10,7 +10,7 @@ use crate::values;
 #[derive(Clone, Copy, Debug, Args)]
 #[command(next_help_heading = "Running")]
 pub(crate) struct LimitFlags {
-    /// Stop after this time, such as 90s, 1.5m or 200ms; what is finished is written, the rest is marked, the exit code is 3
+    /// Stop after this time, such as 90s, 1.5m or 200ms, or a number of seconds; what is finished is written, the rest is marked, the exit code is 3
     #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = values::duration)]
     pub(crate) time_limit: Option<Duration>,
 

@@ -16,7 +16,8 @@ pub(crate) struct SequenceFlags {
     #[arg(long, value_name = "NAME=FROM:TO")]
     pub(crate) sweep: Vec<Sweep>,
 
-    /// How many pictures: an animation where the picture is a .gif, else numbered files [default: 36, if there is a sequence; iso.gif]
+    /// How many pictures; they become an animation where the picture is a .gif, as iso.gif where none is named, and numbered files else
+    /// [default: 36]
     #[arg(long, value_name = "N", value_parser = values::whole(2..=1000_u32))]
     pub(crate) frames: Option<u32>,
 }
