@@ -1,14 +1,15 @@
 //! How far rounding moves the values of a formula: each value is held against its enclosure at the same point.
 
 use iso_expr::engine::{Boxes, Enclosures};
-use iso_expr::{BatchKernel, BoxKernel, Decoration, Interval, Scratch};
+use iso_expr::{BatchKernel, BoxKernel, Decorated, Decoration, Interval, Scratch};
 
 /// A value in doubles, and how far it is from what exact arithmetic gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rounded {
     /// The value.
     pub(crate) value: f64,
-    /// A bound of |value − exact value|: infinite where none is known, NaN where the formula is undefined.
+    /// A bound of |value − exact value|: infinite where none is known, as where exact arithmetic may not define the formula, and NaN
+    /// where it certainly does not.
     pub(crate) error: f64,
 }
 
@@ -17,11 +18,12 @@ impl Rounded {
     const DIGITS: f64 = 15.954_589_770_191_003;
 
     /// The value, and the bound that its enclosure gives.
-    fn new(value: f64, enclosure: Interval) -> Self {
-        let error = match (enclosure.is_empty(), value.is_finite()) {
+    fn new(value: f64, Decorated { interval, decoration }: Decorated) -> Self {
+        let is_bounded = value.is_finite() && decoration >= Decoration::Defined;
+        let error = match (interval.is_empty(), is_bounded) {
             (true, _) => f64::NAN,
             (false, false) => f64::INFINITY,
-            (false, true) => enclosure.minus(Interval::point(value)).magnitude(),
+            (false, true) => interval.minus(Interval::point(value)).magnitude(),
         };
         Self { value, error }
     }
@@ -52,17 +54,20 @@ pub(crate) fn rounded(
     values.evaluate(scratch, &points, &mut found);
     let room = Enclosures { lo: &mut lo, hi: &mut hi, decoration: &mut decoration };
     enclosures.evaluate(scratch, Boxes { lo: points, hi: points }, room);
-    let ends = lo.into_iter().zip(hi);
     let rows = points[0].len();
-    let of = |(place, (lo, hi)): (usize, (f64, f64))| {
-        let is_derivative = place >= rows;
-        if is_derivative && found[place % rows].is_nan() {
-            Rounded { value: f64::NAN, error: f64::NAN }
-        } else {
-            Rounded::new(found[place], Interval { lo, hi })
+    let of = |place: usize| {
+        let of_value = place % rows;
+        if place != of_value && found[of_value].is_nan() {
+            return Rounded { value: f64::NAN, error: f64::NAN };
         }
+        // Where the formula may be undefined, so may its derivatives.
+        let decoration = decoration[place].min(decoration[of_value]);
+        Rounded::new(
+            found[place],
+            Decorated { interval: Interval { lo: lo[place], hi: hi[place] }, decoration },
+        )
     };
-    ends.enumerate().map(of).collect()
+    (0..count).map(of).collect()
 }
 
 #[cfg(test)]
@@ -94,6 +99,26 @@ mod tests {
         assert!((lost.value - exact).abs() <= lost.error && (kept.value - exact).abs() <= kept.error + 1e-32);
         assert_eq!(lost.digits_lost(), Rounded::DIGITS);
         assert!(kept.digits_lost() < 1.0, "{}", kept.digits_lost());
+    }
+
+    /// −0.2 − 0.8 in doubles is −1, but the doubles 0.2 and 0.8 together exceed 1 by 2⁻⁵⁴.
+    #[test]
+    fn what_exact_arithmetic_may_not_define_has_no_bound() {
+        for (formula, value) in [
+            ("acos(-0.2 - x)", std::f64::consts::PI),
+            ("if(acos(-0.2 - x) <= 9, 1, 2)", 1.0),
+            ("sqrt(x + 0.2 - 1)", 0.0),
+        ] {
+            assert_eq!(at(formula, 0.8), Rounded { value, error: f64::INFINITY }, "{formula}");
+        }
+    }
+
+    /// Of a choice, the branch that is not taken need not be defined.
+    #[test]
+    fn what_is_defined_has_a_bound_whatever_is_not_beside_it() {
+        for formula in ["if(x < 0.9, x, acos(-0.2 - x))", "floor(x)", "abs(x - 0.8)", "sqrt(x - 0.8)"] {
+            assert!(at(formula, 0.8).error < 1e-15, "{formula}: {:?}", at(formula, 0.8));
+        }
     }
 
     #[test]
