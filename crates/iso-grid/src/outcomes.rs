@@ -17,7 +17,7 @@ pub enum Outcome {
     /// The ray crosses the surface.
     Hit(Hit),
     /// The ray comes so close to the surface that rounding cannot tell a contact from a near miss, as at a root of even multiplicity or a
-    /// plateau.
+    /// plateau. Of several such places in a row, as on a plateau, t is the first one as far as the method can tell.
     Touch(Hit),
     /// The method found no root. Whether that is proven is the method's to say.
     Miss,

@@ -113,6 +113,33 @@ fn a_plateau_is_touched_where_it_starts() {
     );
 }
 
+/// Where z is the greatest of all, F is z − z, which no enclosure over a stretch tells to be zero. The rays come to where that begins at z = 1, in the
+/// face of the box, and at z = x, from where z is less.
+#[test]
+fn t_of_a_touch_is_where_a_plateau_begins() {
+    for (formula, origin, direction, t) in [
+        ("max(x, z) - max(y, z)", DVec3::new(0.1, -0.2, 3.0), DVec3::NEG_Z, 2.0),
+        ("(max(x, z) - max(y, z))^2", DVec3::new(0.1, -0.2, -3.0), DVec3::Z, 3.1),
+        ("abs(max(x, z) - max(y, z))", DVec3::new(0.1, -0.2, -3.0), DVec3::Z, 3.1),
+        ("(max(x, z) - max(y, z))^2", DVec3::new(0.5, -0.2, -3.0), DVec3::new(-0.1, 0.0, 1.0), 3.5 / 1.1),
+    ] {
+        let outcome = end(formula, 1.0, origin, direction);
+        let Outcome::Touch(Hit { t: found, bracket }) = outcome else { panic!("{formula}: {outcome:?}") };
+        assert!((found - t).abs() < 1e-14, "{formula}: {outcome:?}, not {t}");
+        assert!(bracket.start <= found && found <= bracket.end, "{formula}: {outcome:?}");
+    }
+}
+
+/// F falls until z = x, is zero as far as z = y, and rises behind that.
+#[test]
+fn t_of_a_touch_is_where_the_flat_bottom_of_a_valley_begins() {
+    let origin = DVec3::new(3.5, -3.5, -0.05);
+    let outcome = end("(max(x, z) - max(y, z))^2", 1.0, origin, DVec3::new(-1.0, 1.0, 0.1));
+    let Outcome::Touch(Hit { t, bracket }) = outcome else { panic!("{outcome:?}") };
+    assert!((t - 3.55 / 1.1).abs() < 1e-14, "{outcome:?}");
+    assert!(bracket.start <= t && t <= bracket.end, "{outcome:?}");
+}
+
 #[test]
 fn the_poles_of_a_tangent_are_passed() {
     let tracer = certified("tan(x) - y", 4.0);
@@ -160,6 +187,41 @@ fn beside_an_undefined_quotient_nothing_is_touched() {
     for formula in ["x/x - 2", "sin(x)/x - 1.5", "(exp(x)-1)/x - 2", "(x^2-1e-2)/(x-0.1) + 3"] {
         let outcome = end(formula, 1.5, DVec3::new(-1.1, 0.3, 0.3), DVec3::new(1.0, 0.1, 0.0));
         assert!(matches!(outcome, Outcome::Miss | Outcome::Undecided(_)), "{formula}: {outcome:?}");
+    }
+}
+
+/// A ray's points are known up to roundings, over which such quotients take all values; in each point they are constant but for roundings. F is
+/// 3/10, π/4 − 1 or −3π/4 − 1, 3/10, and −1/2 there.
+#[test]
+fn beside_a_plane_of_undefined_quotients_nothing_is_touched() {
+    let mut random = Random::new(7);
+    let mut number = || random.between(-1.0, 1.0);
+    let rays: Vec<Ray> = (0..500)
+        .map(|_| {
+            let origin = DVec3::new(3.0 * number(), 3.0 * number(), 4.0 + number());
+            let target = DVec3::new(number(), number(), 0.0);
+            Ray { origin, direction: (target - origin).normalize() }
+        })
+        .collect();
+    for formula in ["z/z - 0.7", "atan2(z, z) - 1", "sin(z)/z - 0.7", "z^3/z^3 - 1.5"] {
+        for outcome in trace(&certified(formula, 1.0), &rays) {
+            assert!(matches!(outcome, Outcome::Miss | Outcome::Undecided(_)), "{formula}: {outcome:?}");
+        }
+    }
+}
+
+/// Points of these rays lie beside the plane by roundings.
+#[test]
+fn a_ray_in_a_plane_that_is_nowhere_crossed_touches_it() {
+    let mut random = Random::new(8);
+    for _ in 0..500 {
+        let mut number = || random.between(0.5, 1.0);
+        let (u, v) = (number(), number());
+        let ray = Ray { origin: DVec3::new(u + 0.25, u, 0.3), direction: DVec3::new(v, v, -1.0) };
+        for formula in ["abs(x - y - 0.25)", "(x - y - 0.25)^2", "(x - y - 0.25)^8"] {
+            let outcome = trace(&certified(formula, 4.0), &[ray])[0];
+            assert!(matches!(outcome, Outcome::Touch(_)), "{formula}: {outcome:?} along {ray:?}");
+        }
     }
 }
 

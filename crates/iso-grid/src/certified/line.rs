@@ -3,6 +3,7 @@
 use iso_expr::interval::{round_down, round_up};
 use iso_expr::{Decorated, Decoration, Interval, Scratch};
 
+use super::classify::free_of_zero;
 use super::kernels::{BATCH, Bounds, Jet, Kernels, NOTHING_KNOWN};
 use crate::{Kernel, Ray, Span};
 
@@ -47,6 +48,22 @@ impl<'a> Line<'a> {
     /// Encloses F at `t`.
     pub(super) fn value_at(&mut self, t: f64) -> Interval {
         self.values(&[Span { start: t, end: t }])[0].interval
+    }
+
+    /// The first of some places at which F may be zero.
+    pub(super) fn first_contact(&mut self, ts: &[f64]) -> Option<f64> {
+        ts.iter().copied().find(|t| !free_of_zero(self.value_at(*t)))
+    }
+
+    /// Encloses F and its gradient at the points of doubles that computing o + t·d gives, one for each `t`; what stands behind their number means
+    /// nothing. A point of the ray itself is known up to roundings only, and there a quotient of tiny numbers, as z/z, seems to take many values.
+    pub(super) fn jets_beside(&mut self, ts: &[f64]) -> [Jet; BATCH] {
+        self.evaluations += ts.len() as u64;
+        let mut boxes = [[Interval::EMPTY; 3]; BATCH];
+        for (bounds, t) in boxes.iter_mut().zip(ts) {
+            *bounds = self.ray.at(*t).to_array().map(Interval::point);
+        }
+        self.jets(&boxes[..ts.len()])
     }
 
     /// Encloses F and its slope over each of the stretches; what stands behind their number means nothing.

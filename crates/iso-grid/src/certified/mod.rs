@@ -45,7 +45,9 @@ use walk::Walk;
 /// - [`Outcome::Hit`]: F is continuous and strictly monotone on the bracket, it has a root there, a simple one, inside
 ///   the region, and no point of the region before it is a root;
 /// - [`Outcome::Touch`]: no point of the region before the bracket is a root, and in the bracket, which cannot be split
-///   further or on all of which rounding hides F, F is continuous and comes within rounding of zero, or is zero on all of it;
+///   further or on all of which rounding hides F, F is continuous and comes within rounding of zero, or is zero on all of it. Its t is the bottom of a
+///   narrow valley of F if F may be zero there by its enclosure; else the first of the start, the middle and the end of what cannot be split at
+///   which F may be zero, so that a plateau is touched where it begins; or the middle if F may be zero only between them;
 /// - [`Outcome::Miss`]: no point of the region is a root;
 /// - [`Outcome::Undecided`]: no point of the region before the stretch is a root. In the stretch the proof stopped: at a
 ///   possible root next to a jump, a pole or an edge of the domain, on a face of the region, or since too much

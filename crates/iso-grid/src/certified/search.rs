@@ -73,11 +73,17 @@ pub(crate) struct Ahead {
     finding: Finding,
 }
 
-/// Whether F, in `value` at a point, may be zero there, or is much nearer to it than at one of two points around it: where it is not, as beside
-/// 0/0, it is only that its enclosures are wide.
-fn is_lower(value: Interval, around: [Interval; 2]) -> bool {
+/// How many times farther from zero than by its slopes F may be where it reaches zero nearby: roots such as ∜x fall so fast at last. Beside 0/0
+/// slopes vanish but for roundings.
+const BENDING: f64 = 16.0;
+
+/// Whether F, in `value` at a point, may be zero there or nearby, as its slopes tell, by which it changes by `change`, or is much nearer to zero
+/// than at one of two points around it. Where it is not, as beside 0/0, it is only that its enclosures are wide.
+fn is_lower(value: Interval, change: f64, around: [Interval; 2]) -> bool {
     let distance = value.lo.max(-value.hi);
-    distance <= 0.0 || around.into_iter().any(|other| 2.0 * distance < other.magnitude())
+    distance <= 0.0
+        || distance <= BENDING * change
+        || around.into_iter().any(|other| 2.0 * distance < other.magnitude())
 }
 
 impl Search<'_> {
@@ -178,7 +184,7 @@ impl Search<'_> {
         if value.decoration < Decoration::Continuous {
             return (!self.pieces_are_free(stretch)).then_some(Outcome::Undecided(stretch));
         }
-        let (mut valley, mut around) = (None, [Interval::ENTIRE; 2]);
+        let (mut around, mut valley) = (stretch, None);
         let mut margin = (stretch.end - stretch.start).max(self.resolution(stretch));
         for _ in 0..WIDENINGS {
             let wide =
@@ -187,11 +193,13 @@ impl Search<'_> {
             let course = self.line.course(wide);
             let [before, after, ..] =
                 self.line.courses(&[wide.start, wide.end].map(|t| Span { start: t, end: t }));
-            around = [before.value.interval, after.value.interval];
-            match classify(wide, course, around[0], around[1]) {
+            match classify(wide, course, before.value.interval, after.value.interval) {
                 None => return None,
                 Some((narrowed, Finding::Crossing)) => return self.place(narrowed),
                 Some(_) => margin *= 4.0,
+            }
+            if course.value.decoration >= Decoration::Continuous {
+                around = wide;
             }
             let (falls, rises) = (side(before.slope.interval), side(after.slope.interval));
             if falls.is_some() && rises.is_some() && falls != rises {
@@ -205,13 +213,25 @@ impl Search<'_> {
         // A valley that was widened may have its bottom before the ray begins, or far from zero.
         let outer = self.clip.outer;
         let bottom = valley.map(|valley| self.line.extremum(valley).clamp(outer.start, outer.end));
-        let bottom = bottom.filter(|t| !free_of_zero(self.line.value_at(*t)));
-        let t = bottom.unwrap_or(stretch.start + 0.5 * (stretch.end - stretch.start));
-        if !is_lower(self.line.value_at(t), around) {
-            return Some(Outcome::Undecided(stretch));
+        Some(self.touch(stretch, bottom, around))
+    }
+
+    /// Ends the search at a stretch that may hold a contact, which is at the bottom of a valley if that may reach zero, or else as near the start of
+    /// the stretch as can be told. F is continuous `around` it.
+    fn touch(&mut self, stretch: Span, bottom: Option<f64>, around: Span) -> Outcome {
+        let middle = stretch.start + 0.5 * (stretch.end - stretch.start);
+        let bottom = self.line.first_contact(bottom.as_slice());
+        let contact = bottom.or_else(|| self.line.first_contact(&[stretch.start, middle, stretch.end]));
+        let t = contact.unwrap_or(middle);
+        let [here, before, after, ..] = self.line.jets_beside(&[t, around.start, around.end]);
+        let sides = self.line.bounds(stretch).map(Interval::width);
+        let changes = here.gradient.into_iter().zip(sides).filter(|(_, side)| *side > 0.0);
+        let change = changes.map(|(partial, side)| partial.interval.magnitude() * side).sum();
+        if !is_lower(here.value.interval, change, [before, after].map(|jet| jet.value.interval)) {
+            return Outcome::Undecided(stretch);
         }
         let bracket = Span { start: stretch.start.min(t), end: stretch.end.max(t) };
-        Some(Outcome::Touch(Hit { t, bracket }))
+        Outcome::Touch(Hit { t, bracket })
     }
 
     /// Ends the search at the one simple root of a stretch, unless it lies outside the region.
