@@ -13,7 +13,7 @@ pub struct Counters {
     pub preprocess_evaluations: u64,
     /// Evaluations of F at points while tracing, samples and root finding alike, with its slope or without.
     pub trace_evaluations: u64,
-    /// Evaluations of F and its gradient at points. Those that find a root and its normal at once are evaluations while tracing, too.
+    /// Evaluations of F and its gradient at points, and of F where slopes stand for the gradient. Those that find a root and its normal at once are evaluations while tracing, too.
     pub gradient_evaluations: u64,
     /// Enclosures of F, or of F and its gradient, over boxes.
     pub box_evaluations: u64,

@@ -12,6 +12,7 @@ mod error;
 mod fitted;
 mod kernel;
 mod lanes;
+mod mean_slopes;
 mod method;
 mod normals;
 mod outcomes;

@@ -8,8 +8,9 @@ use pulp::{Simd, WithSimd};
 
 use crate::area::Area;
 use crate::lanes::{Lanes, ROW, Row, parts};
+use crate::mean_slopes::Around;
 use crate::point_rows::PointRows;
-use crate::{Hit, Kernel, Outcome, OutcomeKind, Outcomes, Span, Surface, Tile, Tracer, Workspace};
+use crate::{Hit, Kernel, Outcome, OutcomeKind, Outcomes, Ray, Span, Surface, Tile, Tracer, Workspace};
 
 /// How many rows of points are asked about by one call of the kernel.
 const ROWS: usize = 32;
@@ -17,9 +18,12 @@ const ROWS: usize = 32;
 /// Blocks of so many columns and rows may be answered by a shorter formula.
 const BLOCK: usize = 8;
 
-/// The distances in front of a point at which its normal is looked for when it has none itself, as parts of the distance
-/// that the ray has come: 2⁻⁴⁰, and from there on in powers of 8 up to 2⁻¹⁰.
-const APPROACH: [i32; 11] = [-40, -37, -34, -31, -28, -25, -22, -19, -16, -13, -10];
+/// The distances in front of a point at which its normal is looked for when it has none itself, as powers of two of the distance
+/// that the ray has come.
+const NEAR: [i32; 3] = [-40, -37, -34];
+
+/// Those where it is looked for farther in front, if the gradient vanishes up to there.
+const FAR: [i32; 8] = [-31, -28, -25, -22, -19, -16, -13, -10];
 
 /// The unit normal ∇F/|∇F| at each hit and touch, towards larger F whichever way the ray comes, and nothing new for other outcomes.
 /// There is one of both for each ray of the tile, the normals NaN where they are not known yet: others were found on the way
@@ -31,7 +35,12 @@ const APPROACH: [i32; 11] = [-40, -37, -34, -31, -28, -25, -22, -19, -16, -13, -
 ///
 /// At a touch, and where the gradient vanishes or is no finite vector, the normal is a limit: that of the points in front of the hit, on
 /// the side that the ray comes from, the nearest that has one. So a double root such as (x² + y² + z² − 1)² = 0 has the
-/// normal of the side that is seen. It stays NaN when no point up to 2⁻¹⁰ of the ray's way in front has one either.
+/// normal of the side that is seen. Where the gradient vanishes, it is looked for up to 2⁻¹⁰ of the ray's way in front; it stays NaN when there is none.
+///
+/// Where the gradient is not finite, as where a derivative overflows, another one is looked for up to 2⁻³⁴ of the ray's way in front only. Where
+/// there is none, the normal is the direction of the mean slopes of F along the axes, which by the mean value theorem are derivatives nearby: over a step
+/// of 2⁻³⁰, 2⁻²⁶ or 2⁻²² of the largest coordinate on the way, that at which longer and shorter ones agree best. It stays NaN where F itself is not
+/// finite around the hit.
 ///
 /// # Errors
 /// When the engine cannot compile the gradient.
@@ -65,7 +74,7 @@ pub fn normals(
                 match outcomes.get(place) {
                     Outcome::Hit(Hit { t, .. }) => asked.push(Asked { place, t }),
                     // The gradient there may be nothing but rounding.
-                    Outcome::Touch(Hit { bracket, .. }) => others.push(Met { place, bracket }),
+                    Outcome::Touch(Hit { bracket, .. }) => others.push(Met { place, bracket, t: None }),
                     _ => {}
                 }
             }
@@ -80,15 +89,12 @@ pub fn normals(
         let everywhere = &**surface.over_points(Kernel::Gradients)?;
         answer(everywhere, workspace, tile, &asked, normals);
         others.extend(unanswered(&asked, outcomes, normals));
-        for approach in APPROACH {
-            if others.is_empty() {
-                break;
-            }
-            asked.clear();
-            asked.extend(others.iter().map(|met| met.in_front(&tile, approach)));
-            answer(everywhere, workspace, tile, &asked, normals);
-            others.retain(|met| normals[met.place].is_nan());
+        approach(everywhere, (workspace, tile), NEAR, &mut others, normals);
+        let steep = steep(everywhere, workspace, tile, &mut others);
+        if !steep.is_empty() {
+            put_mean_slopes(&**surface.over_points(Kernel::Values)?, workspace, tile, &steep, normals);
         }
+        approach(everywhere, (workspace, tile), FAR, &mut others, normals);
     }
     workspace.asked = asked;
     Ok(())
@@ -99,6 +105,66 @@ pub fn normals(
 pub(crate) struct Asked {
     pub(crate) place: usize,
     pub(crate) t: f64,
+}
+
+/// Puts the normals of points in front of where these rays meet the surface in their places, the nearest that has one. Rays that have theirs are
+/// left out.
+fn approach<const N: usize>(
+    kernel: &dyn BatchKernel,
+    (workspace, tile): (&mut Workspace, Tile<'_>),
+    distances: [i32; N],
+    others: &mut Vec<Met>,
+    normals: &mut [DVec3],
+) {
+    for power in distances {
+        if others.is_empty() {
+            return;
+        }
+        let asked: Vec<_> = others.iter().map(|met| met.in_front(&tile, power)).collect();
+        answer(kernel, workspace, tile, &asked, normals);
+        others.retain(|met| normals[met.place].is_nan());
+    }
+}
+
+/// Takes the rays out that have no finite gradient where their normals are looked for.
+fn steep(
+    kernel: &dyn BatchKernel,
+    workspace: &mut Workspace,
+    tile: Tile<'_>,
+    others: &mut Vec<Met>,
+) -> Vec<Met> {
+    let Workspace { points, scratch, counters, .. } = workspace;
+    points.clear();
+    others.iter().for_each(|met| points.push(met.point(&tile)));
+    counters.gradient_evaluations += points.len() as u64;
+    let outputs = points.evaluate(kernel, scratch, 4);
+    let (count, mut number) = (others.len(), 0..);
+    let is_steep = |_: &mut Met| {
+        let number = number.next().expect("numbers do not end");
+        (1..4).any(|output| !outputs[output * count + number].is_finite())
+    };
+    others.extract_if(.., is_steep).collect()
+}
+
+/// Puts the directions of mean slopes in the places of these rays.
+fn put_mean_slopes(
+    kernel: &dyn BatchKernel,
+    workspace: &mut Workspace,
+    tile: Tile<'_>,
+    rays: &[Met],
+    normals: &mut [DVec3],
+) {
+    let Workspace { points, scratch, counters, .. } = workspace;
+    for rays in rays.chunks(ROWS) {
+        let around = |met: &Met| Around { point: met.point(&tile), scale: met.scale(&tile) };
+        points.clear();
+        rays.iter().flat_map(|met| around(met).points()).for_each(|point| points.push(point));
+        counters.gradient_evaluations += points.len() as u64;
+        let values = points.evaluate(kernel, scratch, 1);
+        for (met, values) in rays.iter().zip(values.chunks_exact(Around::POINTS)) {
+            normals[met.place] = around(met).normal(values);
+        }
+    }
 }
 
 /// The shorter formula that the tracer knows around some points of a block.
@@ -118,7 +184,7 @@ fn kernel_on(tracer: &dyn Tracer, tile: Tile<'_>, asked: &[Asked]) -> Option<Arc
 fn unanswered(asked: &[Asked], outcomes: &Outcomes, normals: &[DVec3]) -> impl Iterator<Item = Met> {
     asked.iter().filter(|asked| normals[asked.place].x.is_nan()).filter_map(|Asked { place, .. }| {
         match outcomes.get(*place) {
-            Outcome::Hit(Hit { bracket, .. }) => Some(Met { place: *place, bracket }),
+            Outcome::Hit(Hit { t, bracket }) => Some(Met { place: *place, bracket, t: Some(t) }),
             _ => None,
         }
     })
@@ -206,7 +272,7 @@ pub(crate) fn put_units<S: Simd>(simd: S, vectors: [&Row; 3], [units @ .., are_p
 /// The direction of a vector whatever its length, NaN for zero and for what is not finite: it is scaled by its largest component
 /// first, where squares may overflow or underflow.
 #[cold]
-fn unit_of(vector: DVec3) -> DVec3 {
+pub(crate) fn unit_of(vector: DVec3) -> DVec3 {
     let largest = vector.abs().max_element();
     if vector.is_finite() && largest > 0.0 { (vector / largest).normalize() } else { DVec3::NAN }
 }
@@ -215,16 +281,34 @@ fn unit_of(vector: DVec3) -> DVec3 {
 struct Met {
     place: usize,
     bracket: Span,
+    /// Where it does at a hit; at a touch the gradient may be nothing but rounding.
+    t: Option<f64>,
 }
 
 impl Met {
+    fn ray(&self, tile: &Tile<'_>) -> Ray {
+        tile.ray(self.place % tile.width(), self.place / tile.width())
+    }
+
+    /// The largest coordinate on the way to the bracket, of the ray's origin or relative to it.
+    fn scale(&self, tile: &Tile<'_>) -> f64 {
+        let Ray { origin, direction } = self.ray(tile);
+        origin.abs().max_element().max(self.bracket.end.abs() * direction.abs().max_element())
+    }
+
     /// Where the ray is in front of the bracket by 2 to this power of the way to it, or of the bracket's length if that is more.
     fn in_front(&self, tile: &Tile<'_>, power: i32) -> Asked {
-        let Self { place, bracket: Span { start, end } } = *self;
-        let ray = tile.ray(place % tile.width(), place / tile.width());
+        let Self { place, bracket: Span { start, end }, .. } = *self;
+        let ray = self.ray(tile);
         let way = end.abs().max(ray.origin.abs().max_element() / ray.direction.abs().max_element());
-        let nearest = way * 2_f64.powi(APPROACH[0]);
-        let distance = nearest.max(end - start) * 2_f64.powi(power - APPROACH[0]);
+        let nearest = way * 2_f64.powi(NEAR[0]);
+        let distance = nearest.max(end - start) * 2_f64.powi(power - NEAR[0]);
         Asked { place, t: start - distance }
+    }
+
+    /// The point whose normal is looked for: that of a hit, or one in front of a touch.
+    fn point(&self, tile: &Tile<'_>) -> DVec3 {
+        let t = self.t.unwrap_or_else(|| self.in_front(tile, NEAR[NEAR.len() - 1]).t);
+        self.ray(tile).at(t)
     }
 }

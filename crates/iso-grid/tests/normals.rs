@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use iso_expr::{Ast, Interpreter};
 use iso_grid::{
-    Certified, Outcome, OutcomeKind, Outcomes, Raster, Region, Surface, Tile, Traced, Tracer, Workspace,
-    normals,
+    Certified, Hit, Outcome, OutcomeKind, Outcomes, Raster, Ray, Region, Span, Surface, Tile, Traced, Tracer,
+    Workspace, normals,
 };
 
 #[test]
@@ -68,6 +68,98 @@ fn hits_on_the_edge_of_a_cut_have_the_normals_of_what_is_cut() {
         let expected = DVec3::new(0.0, -(1.0 - z * z).sqrt(), z);
         assert!(normal.distance(expected) < 1e-9, "{normal} instead of {expected}");
     }
+}
+
+/// A surface z = w(u) along which a term that overflows in derivatives, but is less than 1e-300 itself, adds nothing to F.
+struct Waves {
+    formula: &'static str,
+    half_side: f64,
+    /// The slope of w at a point.
+    slope: fn(DVec3) -> DVec3,
+    /// Where a derivative is no number.
+    overflows: fn(DVec3) -> bool,
+    /// How near normals are to those of the surface: at touches F is a square, whose slopes are lost in rounding.
+    slack: f64,
+}
+
+/// Seen from a distance of 60, the second one's slope turns by a thousandth in 2⁻²⁵ of the way.
+const OVERFLOWING: [Waves; 3] = [
+    Waves {
+        formula: "z - sin(20x)/5 - 1/cosh(800x)",
+        half_side: 1.6,
+        slope: |p| 4.0 * (20.0 * p.x).cos() * DVec3::X,
+        overflows: |p| p.x.abs() > 0.9,
+        slack: 1e-6,
+    },
+    Waves {
+        formula: "z - sin(200y)/50 - 1/sinh(1/y^2)",
+        half_side: 0.5,
+        slope: |p| 4.0 * (200.0 * p.y).cos() * DVec3::Y,
+        overflows: |p| p.y.abs() < 0.037,
+        slack: 1e-6,
+    },
+    Waves {
+        formula: "(z - sin(20x)/5 - 1/cosh(800x))^2",
+        half_side: 1.6,
+        slope: |p| 4.0 * (20.0 * p.x).cos() * DVec3::X,
+        overflows: |p| p.x.abs() > 0.9,
+        slack: 1e-4,
+    },
+];
+
+/// Of tiles and of single rays.
+#[test]
+fn where_derivatives_overflow_normals_are_those_of_mean_slopes() {
+    let raster = Raster::Spreading {
+        eye: DVec3::new(3.0, -40.0, 45.0),
+        forward: DVec3::new(-3.0, 40.0, -45.0).normalize(),
+        right: DVec3::new(5e-4, 0.0, 0.0),
+        down: DVec3::new(0.0, -4e-4, -3e-4),
+    };
+    let tile = Tile::of(&raster, [-31.5, -31.5], 64, 64);
+    let rays: Vec<_> = tile.rays().collect();
+    for Waves { formula, half_side, slope, overflows, slack } in OVERFLOWING {
+        let program = Ast::parse(formula).unwrap().lower(&[]).unwrap().program().simplified();
+        let surface = Surface::new(Arc::new(Interpreter), program);
+        let region = Region::new(DVec3::splat(-half_side), DVec3::splat(half_side)).unwrap();
+        let tracer = Certified::new(&surface, region).unwrap();
+        let (_, of_tile, on_the_way) = traced(&tracer, tile);
+        let mut of_rays = Outcomes::default();
+        tracer.trace(&mut Workspace::default(), &rays, &mut of_rays);
+        for (outcomes, mut found) in [(of_tile, on_the_way), (of_rays, vec![DVec3::NAN; rays.len()])] {
+            normals(&surface, None, &mut Workspace::default(), tile, &outcomes, &mut found).unwrap();
+            let mut overflowing = 0;
+            for ((outcome, ray), normal) in outcomes.iter().zip(&rays).zip(found) {
+                let (Outcome::Hit(Hit { t, .. }) | Outcome::Touch(Hit { t, .. })) = outcome else { continue };
+                let point = ray.at(t);
+                if overflows(point) {
+                    overflowing += 1;
+                    let upwards = (DVec3::Z - slope(point)).normalize();
+                    // Of what is squared, the larger side is the one that is seen.
+                    let is_below = formula.ends_with("^2") && upwards.dot(ray.direction) > 0.0;
+                    let expected = if is_below { -upwards } else { upwards };
+                    assert!(
+                        normal.distance(expected) < slack,
+                        "{formula}: {normal} at {point}, not {expected}"
+                    );
+                }
+            }
+            assert!(overflowing > 50, "{formula}: {overflowing}");
+        }
+    }
+}
+
+/// Along rays in the plane x = 0 the gradient is infinite everywhere.
+#[test]
+fn an_infinite_gradient_gives_the_normal_across_it() {
+    let program = Ast::parse("z = cbrt(x)").unwrap().lower(&[]).unwrap().program().simplified();
+    let surface = Surface::new(Arc::new(Interpreter), program);
+    let rays = [Ray { origin: DVec3::new(0.0, 0.1, 3.0), direction: DVec3::NEG_Z }];
+    let bracket = Span { start: 3.0, end: 3.0 };
+    let outcomes: Outcomes = [Outcome::Hit(Hit { t: 3.0, bracket })].into_iter().collect();
+    let mut found = [DVec3::NAN];
+    normals(&surface, None, &mut Workspace::default(), rays[..].into(), &outcomes, &mut found).unwrap();
+    assert!(found[0].distance(DVec3::NEG_X) < 1e-5, "{}", found[0]);
 }
 
 /// What comes of a tile: where a tracer says that its rays meet the surface, and the normals that it comes by on the way.
