@@ -19,22 +19,22 @@ pub use sphere::Sphere;
 /// Half the sides of the cubes around the origin in which the surface is looked for, one after the other.
 const HALF_SIDES: [f64; 5] = [2.0, 8.0, 32.0, 128.0, 512.0];
 
-/// All of them are larger where the first one would hold fewer waves of a sine or cosine than these,
+/// All of these cubes are larger where the first one would hold fewer waves of a sine or cosine than this.
 const WAVES: f64 = 2.0;
 
-/// but no more than so many times: what hardly changes there is likely to matter little.
+/// Long waves make cubes no larger than so many times: what hardly changes there is likely to matter little.
 const SLOWEST: f64 = 32.0;
 
-/// Those in which it is looked for if nothing is found in them, or if it is cut off in the last of them.
+/// Half the sides of those in which it is looked for if nothing is found in the [first ones](HALF_SIDES), or if it is cut off in the last of them.
 const FARTHER: [f64; 6] = [2048.0, 8192.0, 32_768.0, 131_072.0, 524_288.0, 2_097_152.0];
 
-/// Those that lie in its inner half.
+/// The cells of a cube along each axis that lie in its inner half.
 const INNER_HALF: Range<i32> = 4..12;
 
-/// A region is cut anew as long as that draws its longest side in to less than this part,
+/// A region is cut anew as long as that draws its longest side in to less than this part.
 const WORTHWHILE: f64 = 0.9;
 
-/// but no more often than this: a single point could be closed in on until no double lies between the sides.
+/// How often a region is cut anew at most: a single point could be closed in on until no double lies between the sides.
 const ROUNDS: usize = 12;
 
 /// A region that was drawn around a surface.

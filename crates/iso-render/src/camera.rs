@@ -53,10 +53,10 @@ pub enum Projection {
 const YAW: f64 = 30.0;
 const PITCH: f64 = 25.0;
 
-/// A surface that [faces](iso_grid::Facing::towards) the camera less than this is seen from its edge, ten degrees off on an average,
+/// A surface that [faces](iso_grid::Facing::towards) the camera less than this is seen from its edge, ten degrees off on an average.
 const EDGE: f64 = 0.03;
 
-/// and then from one of these sides.
+/// The sides, in degrees, from one of which such a surface is seen instead.
 const OTHER_YAWS: [f64; 3] = [-30.0, 75.0, -75.0];
 
 impl View {

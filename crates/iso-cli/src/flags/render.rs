@@ -103,7 +103,7 @@ Examples:
   iso render 'x^4 - 5x^2 + y^4 - 5y^2 + z^4 - 5z^2 + 11.8' --box -3,3 --ortho --view-width 8
   iso render 'sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)' --level 0.3 --box -4,4 --yaw -20 --pitch 40
   iso render 'x^4 + y^4 + z^4 = 1' --smooth 3 -o figure.png
-  iso render 'x^2 + y^2 = z^2 + 0.1' --colors gold,teal --background none -o logo.png
+  iso render 'x^2 + y^2 = z^2 + 0.1 where z^2 < 3' --colors gold,teal --background none -o logo.png
   iso render '-x^2 - y^2 - z^2' --level -1 --method grid --grid 60 --json
   iso render @heart.txt --set a=0.5 --size 1920x1080 -o heart.png --points points.csv
   iso render 'x^2 + y^2 = z' --ortho --depth depth.exr

@@ -14,19 +14,19 @@ pub(super) const HALVINGS: u32 = 4;
 /// Cells of a cube along each axis that lie in the cube before it.
 pub(super) const BEFORE: Range<i32> = 6..10;
 
-/// Cells at the faces of a cube are cut in halves this often to find out whether the surface meets the faces,
+/// Cells at the faces of a cube are cut in halves this often to find out whether the surface meets the faces.
 const HALVINGS_AT_FACES: u32 = 4;
 
-/// as long as there are no more of them,
+/// Of more cells at the faces of a cube none are halved.
 const MOST_AT_FACES: usize = 512;
 
-/// and only if no points of it are found in so many of them, for then it most likely does.
+/// In how many of those points of the surface are looked for first: if any are found, it most likely meets the faces, and none are halved.
 const ASKED_AT_FACES: usize = 64;
 
-/// Cells that may hold the surface are cut in halves this often to prove that they do,
+/// Cells that may hold the surface are cut in halves this often to prove that they do.
 const HALVINGS_TO_PROVE: u32 = 8;
 
-/// as long as there are no more of them; of more, some are looked at.
+/// Of more cells that may hold the surface none are halved, and only some are looked at.
 const MOST_TO_PROVE: usize = 300;
 
 /// No side is drawn closer than this part of the longest one, so that flat surfaces keep some space around them.

@@ -11,10 +11,10 @@ use super::Facing;
 use super::cells::{HALVINGS, OCTANTS, enclose, halved};
 use crate::{Region, Workspace};
 
-/// Cells outside of the sphere are halved this often to find more of the surface in them,
+/// Cells outside of the sphere are halved this often to find more of the surface in them.
 const HALVINGS_OUTSIDE: u32 = 3;
 
-/// as long as there are no more of them.
+/// Of more cells outside of the sphere none are halved.
 const MOST_OUTSIDE: usize = 250;
 
 /// The edges of a cell, by the numbers of their corners in [`OCTANTS`].
