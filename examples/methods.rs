@@ -81,6 +81,8 @@ fn main() {
     }
     print!("{INTRODUCTION}");
     println!("\n## All scenes together, {} engine\n", engine.name());
+    let [Tally { rays, decided, rooted, .. }, ..] = totals;
+    println!("The oracle decides {decided} of {rays} rays, and finds a root on {rooted} of them.\n");
     print_summary(&totals);
     print_table(&rows, "Wrong hits, missed hits, touches and undecided rays", |tally| {
         let Tally { wrong, missed, touches, undecided, .. } = tally;
@@ -101,11 +103,13 @@ program in ball arithmetic (`tools/oracle`); rays that it leaves undecided are l
 `grid` does; `grid` and `octree` have 60 cells along each axis, the finest of the paper's grids. One thread traces; `grid`
 and `octree` prepare their cells on all.
 
+- A *right* hit is the root that the oracle found: within 10⁻⁶ of it, relative to t, or in a bracket that holds both.
 - A *wrong* hit is one where there is no root.
 - A hit is *missed* when the method says that there is none, or finds a later one.
-- *Touches* are roots found but not proven simple, whether the oracle calls them hits or touches.
+- *Touches* are roots found but not proven simple, whether the oracle calls them hits or touches. They are right, wrong or missed like hits.
 - *Undecided* rays are those that the method leaves open.
-- The *error* is the largest |t − t*| / max(1, |t*|) over the hits and touches found, t* being the oracle's hit.
+- The *error* is the largest |t − t*| / max(1, |t*|) over the hits and touches found, t* being the oracle's hit. `certified` encloses roots to 10⁻¹² where
+  rounding lets it: not where an exponential overflows in front of the root (`overflow_diff`), nor far from the origin (`far_sphere_expanded`).
 - *Evaluations* are of F at points for the sampling methods, of F or of F and its gradient over boxes for `certified`,
   preprocessing included. Time includes it too, but not the compilation of kernels.
 ";
@@ -114,6 +118,10 @@ and `octree` prepare their cells on all.
 #[derive(Clone, Copy, Default)]
 struct Tally {
     rays: usize,
+    /// Those that the oracle decides.
+    decided: usize,
+    /// Those on which it finds a root.
+    rooted: usize,
     right: usize,
     wrong: usize,
     missed: usize,
@@ -146,8 +154,13 @@ impl Tally {
     }
 
     fn count(&mut self, verdict: &Verdict, outcome: Outcome) {
+        if verdict.status == Status::Undecided {
+            return;
+        }
+        let exists = verdict.status != Status::Miss;
+        self.decided += 1;
+        self.rooted += usize::from(exists);
         let found = match outcome {
-            _ if verdict.status == Status::Undecided => return,
             Outcome::Undecided(_) => {
                 self.undecided += 1;
                 return;
@@ -159,7 +172,6 @@ impl Tally {
                 Some(hit)
             }
         };
-        let exists = verdict.status != Status::Miss;
         let Some(Hit { t, bracket }) = found else {
             self.missed += usize::from(exists);
             return;
@@ -177,6 +189,8 @@ impl Tally {
 
     fn add(&mut self, other: &Self) {
         self.rays += other.rays;
+        self.decided += other.decided;
+        self.rooted += other.rooted;
         self.right += other.right;
         self.wrong += other.wrong;
         self.missed += other.missed;
