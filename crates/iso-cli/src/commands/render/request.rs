@@ -21,7 +21,7 @@ use crate::notes::Drawn;
 use crate::output::{OutputFile, is_standard_output};
 use crate::pictures::{animation, check_paint};
 use crate::plan::{PlanReport, kernels_compiled};
-use crate::progress::Progress;
+use crate::progress::{Progress, waiting};
 use crate::summary::Summary;
 
 /// All that flags and files say, checked.
@@ -105,7 +105,7 @@ impl Request {
     /// Draws the pictures and writes their files, and says what each took. Those that are not begun when work is stopped
     /// are left out.
     pub(super) fn fulfil(mut self, shows_progress: bool) -> Result<Vec<Summary>, Failure> {
-        let region = self.region()?;
+        let region = waiting("looking for the surface", shows_progress, || self.region())?;
         let mut bytes = Vec::new();
         let mut animated = self.animation.as_ref().map(|_| Animation::new(&mut bytes)).transpose()?;
         let all = self.pixels();
