@@ -12,11 +12,22 @@ impl Builder {
 
     pub(super) fn difference(&mut self, x: Form, y: Form) -> Form {
         let middle = self.of(Operation::Subtract, x.middle, y.middle);
-        let slopes = [0, 1, 2].map(|place| match (x.slopes[place], y.slopes[place]) {
-            (Some(x), Some(y)) => Some(self.of(Operation::Subtract, x, y)),
-            (x, y) => x.or_else(|| y.map(|y| self.negated(y))),
-        });
+        let slopes = [0, 1, 2].map(|place| self.minus(x.slopes[place], y.slopes[place]));
         self.combined(middle, slopes, x, y)
+    }
+
+    /// a − b, where parts that are missing are zero.
+    fn minus(&mut self, a: Option<NodeId>, b: Option<NodeId>) -> Option<NodeId> {
+        match (a, b) {
+            (Some(a), Some(b)) => Some(self.of(Operation::Subtract, a, b)),
+            (a, b) => a.or_else(|| b.map(|b| self.negated(b))),
+        }
+    }
+
+    /// What the product of both deviations from the middles does not exceed; `None` where one of the forms is one number.
+    pub(super) fn product_of_deviations(&mut self, x: Form, y: Form) -> Option<NodeId> {
+        let (x, y) = (self.deviation(x)?, self.deviation(y)?);
+        Some(self.times(x, y))
     }
 
     /// A sum or difference with this middle and these slopes.
@@ -42,10 +53,7 @@ impl Builder {
         let [x_middle, y_middle] = [x.middle, y.middle].map(|middle| self.magnitude_of(middle));
         let of_y = y.rest.map(|rest| self.times(x_middle, rest));
         let of_x = x.rest.map(|rest| self.times(y_middle, rest));
-        let of_both = match (self.deviation(x), self.deviation(y)) {
-            (Some(x), Some(y)) => Some(self.times(x, y)),
-            _ => None,
-        };
+        let of_both = self.product_of_deviations(x, y);
         let rest = self.0.sum(of_y, of_x);
         let rest = self.0.sum(rest, of_both);
         let size = self.times(x.size, y.size);
@@ -104,10 +112,7 @@ impl Builder {
             [x, y].map(|form| form.slopes.map(|slope| slope.map(|slope| self.times(slope, inverse))));
         let slopes = [0, 1, 2].map(|place| {
             let common = y_slopes[place].map(|slope| self.times(middle, slope));
-            match (x_slopes[place], common) {
-                (Some(own), Some(common)) => Some(self.of(Operation::Subtract, own, common)),
-                (own, common) => own.or_else(|| common.map(|common| self.negated(common))),
-            }
+            self.minus(x_slopes[place], common)
         });
         let [size_of_inverse, size_of_middle] = [inverse, middle].map(|number| self.magnitude_of(number));
         let [of_x, of_y] = [x, y].map(|form| form.rest.map(|rest| self.times(rest, size_of_inverse)));

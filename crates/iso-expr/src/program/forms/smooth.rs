@@ -87,10 +87,7 @@ impl Builder {
             self.0.sum(mixed.slopes[place], shift)
         });
         let of_share = share.rest.map(|rest| self.times(magnitude, rest));
-        let of_both = match (self.deviation(share), self.deviation(difference)) {
-            (Some(share), Some(difference)) => Some(self.times(share, difference)),
-            _ => None,
-        };
+        let of_both = self.product_of_deviations(share, difference);
         let rest = self.0.sum(mixed.rest, of_share);
         let rest = self.0.sum(rest, of_both);
         // A share deviates by less than 1, so that this is no less than each of the parts.
