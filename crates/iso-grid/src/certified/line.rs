@@ -5,6 +5,7 @@ use iso_expr::{Decorated, Decoration, Interval, Scratch};
 
 use super::classify::free_of_zero;
 use super::kernels::{BATCH, Bounds, Jet, Kernels, NOTHING_KNOWN};
+use crate::roots::Sample;
 use crate::{Kernel, Ray, Span};
 
 /// F along a ray. All enclosures hold for every real t of a stretch and every point o + t·d exactly.
@@ -18,7 +19,9 @@ pub(super) struct Line<'a> {
     pub(super) ray: Ray,
     /// How many boxes were enclosed along this ray.
     pub(super) evaluations: u64,
-    /// How many operations that took.
+    /// At how many points F was computed in doubles.
+    pub(super) points: u64,
+    /// How many operations all that took.
     pub(super) operations: u64,
 }
 
@@ -48,6 +51,17 @@ impl<'a> Line<'a> {
     /// Encloses F at `t`.
     pub(super) fn value_at(&mut self, t: f64) -> Interval {
         self.values(&[Span { start: t, end: t }])[0].interval
+    }
+
+    /// F at the places `ts`, in doubles.
+    pub(super) fn samples<const N: usize>(&mut self, ts: [f64; N]) -> [Sample; N] {
+        self.points += N as u64;
+        self.operations += self.asked.charge(Kernel::Values, N);
+        let mut values = [0.0; N];
+        let points = ts.map(|t| self.ray.at(t));
+        let [x, y, z] = [0, 1, 2].map(|axis| points.map(|point| point[axis]));
+        self.asked.over_points(Kernel::Values).evaluate(self.scratch, &[&x, &y, &z], &mut values);
+        std::array::from_fn(|place| Sample { t: ts[place], value: values[place] })
     }
 
     /// The first of some places at which F may be zero.
@@ -165,7 +179,8 @@ mod tests {
         let ray = Ray { origin: DVec3::Y, direction: DVec3::X };
         let scratch = &mut Scratch::default();
         let (kernels, asked) = (&whole, &whole);
-        let mut line = Line { kernels, local: &local, asked, scratch, ray, evaluations: 0, operations: 0 };
+        let mut line =
+            Line { kernels, local: &local, asked, scratch, ray, evaluations: 0, points: 0, operations: 0 };
         for (end, expected) in [(3.0, 2.0), (5.0, 1.0), (3.5, 2.0)] {
             line.enter(Span { start: 0.0, end });
             let found = [line.value_at(2.0), line.course(Span { start: 2.0, end: 2.0 }).value.interval];

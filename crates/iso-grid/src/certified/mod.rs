@@ -135,6 +135,7 @@ impl Certified {
                 scratch,
                 ray,
                 evaluations: 0,
+                points: 0,
                 operations: 0,
             },
             accuracy: self.accuracy,
@@ -154,6 +155,7 @@ impl Certified {
         }
         search.way.tally(counters);
         counters.box_evaluations += search.line.evaluations;
+        counters.trace_evaluations += search.line.points;
         counters.operations += search.line.operations;
         end.unwrap_or_else(Outcome::Undecided)
     }

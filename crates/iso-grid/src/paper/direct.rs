@@ -1,9 +1,9 @@
 //! The paper's method without a grid.
 
 use crate::paper::lockstep::Lockstep;
-use crate::paper::roots::RootFinding;
 use crate::paper::settings::check_step;
 use crate::paper::stretch::{Spacing, Stretch, Stretches};
+use crate::roots::RootFinding;
 use crate::{Counters, GridError, Outcomes, Ray, Region, Surface, Tracer, Workspace};
 
 /// Samples each ray through the whole region and narrows down the first change of sign: the paper's N = 0.

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::batch::PointBatch;
 use crate::paper::lattice::{self, Lattice};
-use crate::paper::sign::Signs;
+use crate::sign::Signs;
 use crate::{Counters, GridError, Stop};
 
 /// Points evaluated by one call of the kernel.

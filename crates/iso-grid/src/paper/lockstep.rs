@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use iso_expr::BatchKernel;
 
-use crate::paper::roots::{RootFinder, RootFinding};
 use crate::paper::search::Search;
 use crate::paper::stretch::Stretches;
+use crate::roots::{RootFinder, RootFinding};
 use crate::{GridError, Kernel, Outcomes, Ray, Region, Span, Stop, Surface, Workspace};
 
 /// Searches under way at once: enough to fill a kernel's batch, few enough to stay in the nearest cache.

@@ -1,7 +1,7 @@
 //! The methods of the paper, which know the signs of F − C at points and nothing else.
 //!
 //! Preprocessing finds the cells of a grid that hold the surface ([`existence`], [`octree`]); a ray walks through cells
-//! ([`walk`]); what it passes of existence cells is sampled ([`search`]), and narrowed down where the sign changes ([`roots`]),
+//! ([`walk`]); what it passes of existence cells is sampled ([`search`]), and narrowed down where the sign changes ([`roots`](crate::roots)),
 //! many rays at a time ([`lockstep`]).
 
 mod direct;
@@ -10,10 +10,8 @@ mod grid;
 mod lattice;
 mod lockstep;
 mod octree;
-mod roots;
 mod search;
 mod settings;
-mod sign;
 mod stretch;
 mod walk;
 
@@ -23,5 +21,4 @@ mod tests;
 pub use direct::Direct;
 pub use grid::Grid;
 pub use octree::Octree;
-pub use roots::{RootFinder, RootFinding};
 pub use settings::GridSettings;

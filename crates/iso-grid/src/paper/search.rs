@@ -1,9 +1,9 @@
 //! The search for the first change of sign along one ray.
 
 use crate::batch::PointBatch;
-use crate::paper::roots::{Bracket, Narrowing, RootFinding, Sample};
-use crate::paper::sign::Signs;
 use crate::paper::stretch::{Stretch, Stretches};
+use crate::roots::{Bracket, Narrowing, RootFinding, Sample};
+use crate::sign::Signs;
 use crate::{Hit, Outcome, Ray, Span};
 
 /// Samples asked for at once. Those behind the first change of sign are wasted, so there are few.

@@ -1,7 +1,7 @@
 //! What a user may set of the paper's methods.
 
 use crate::GridError;
-use crate::paper::roots::RootFinding;
+use crate::roots::RootFinding;
 
 /// How the paper's methods cut the region and sample rays.
 #[derive(Clone, Copy, Debug, PartialEq)]

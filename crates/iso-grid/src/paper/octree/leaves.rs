@@ -8,7 +8,7 @@ use super::places::{PlaceMap, PlaceSet};
 use crate::batch::PointBatch;
 use crate::paper::existence::{Examination, Suspect};
 use crate::paper::lattice::{self, Lattice};
-use crate::paper::sign::Signs;
+use crate::sign::Signs;
 use crate::{Counters, GridError, Stop};
 
 /// How many blocks the longest axis holds at least when the search begins, unless it has fewer cells.

@@ -10,7 +10,7 @@ mod tests;
 pub(crate) use bracket::{Bracket, Sample};
 
 use crate::GridError;
-use crate::paper::sign::Signs;
+use crate::sign::Signs;
 use itp::Itp;
 use newton::Newton;
 

@@ -1,6 +1,6 @@
 //! An interval whose ends have unlike signs.
 
-use crate::paper::sign::Signs;
+use crate::sign::Signs;
 use crate::{Hit, Span};
 
 /// F − C at a point of the ray.
