@@ -230,6 +230,11 @@ impl Form {
         }
     }
 
+    /// Whether it says anything.
+    pub(super) fn is_known(&self) -> bool {
+        self.slope.radius.is_finite()
+    }
+
     /// How far the ends of the stretch are from `t`.
     fn length(&self) -> f64 {
         round_up(self.reach.end - self.t).max(round_up(self.t - self.reach.start))

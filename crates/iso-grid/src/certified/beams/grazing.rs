@@ -63,8 +63,7 @@ impl Subdivision<'_> {
     /// Follows each ray of a part on which F bends one way; says whether it did.
     pub(super) fn follow_bent(&mut self, part: &Part) -> bool {
         let size = self.size(part);
-        let is_known = part.form.slope.radius.is_finite();
-        if !is_known
+        if !part.form.is_known()
             || !self.is_fit(part)
             || size > LARGE && !self.bends_evenly(part.kernels)
             || self.memory.attempts.are_vain(size)

@@ -7,7 +7,7 @@ use iso_expr::{Composition, Decorated, Decoration, Interval};
 
 use super::beam::Beam;
 use super::form::{Form, Gradient, along};
-use super::grazing::SIZES;
+use super::grazing::{LARGE, SIZES};
 use super::subdivision::{Part, Subdivision};
 use crate::batch::Affine;
 use crate::certified::classify::free_of_zero;
@@ -19,8 +19,11 @@ const OVERLAP: f64 = 1.0 / 16.0;
 /// The least overlap, as part of the tile's farthest distance.
 pub(super) const LEAST_OVERLAP: f64 = 1.0 / (1u64 << 30) as f64;
 
-/// Over beams of more columns and rows F is enclosed before forms are asked for.
+/// Over beams of more columns and rows F is enclosed before forms are asked for, and gradients are not where those say nothing.
 const VAGUE: usize = 8;
+
+/// Of functions of more operations no forms are asked for over beams of more than [`LARGE`] columns and rows, where they hardly ever say anything.
+const LONG: u64 = 100;
 
 /// Faces of no more operations each, on average, are asked for instead of forms of F.
 const SHORT: u64 = 8;
@@ -135,16 +138,17 @@ impl Subdivision<'_> {
             return self.keep_by_faces(slabs);
         }
         let has_forms = self.kernels(kernels).have_forms();
-        let is_large = self.beam(beam).area.side() > VAGUE;
-        if self.kernels(kernels).may_be_shortened() || has_forms && is_large {
+        let side = self.beam(beam).area.side();
+        if self.kernels(kernels).may_be_shortened() || has_forms && side > VAGUE {
             // The gradient of a formula with branches takes much longer than its values, which often say enough. Of large sets
             // forms say less than enclosures.
             let count = self.drop_free(slabs);
             slabs = &mut slabs[..count];
         }
+        let are_vain = has_forms && side > LARGE && self.kernels(kernels).operations(Kernel::Values) > LONG;
         for slabs in slabs.chunk_by_mut(|a, b| a.may_break == b.may_break) {
-            if slabs[0].may_break {
-                // As beside a pole, where neither forms nor gradients would say anything.
+            if slabs[0].may_break || are_vain {
+                // Neither forms nor gradients would say anything, as beside a pole.
                 slabs.iter().for_each(|slab| self.keep_unknown(slab));
             } else if has_forms {
                 self.keep_by_forms(slabs);
@@ -209,18 +213,26 @@ impl Subdivision<'_> {
         }
     }
 
-    /// F on a slab, the one of this number among those whose forms were found last; `None` where they say nothing or less than roundings.
+    /// F on a slab, the one of this number among those whose forms were found last; `None` where gradients may say more: where forms say less than
+    /// roundings, and over small beams where they say nothing.
     fn affine_form(&self, slab: &Slab, number: usize, unit: (f64, f64)) -> Option<Form> {
-        let (rays, forms) = (self.beam(slab.beam), &self.workspace.forms);
-        let [value, slope] = match self.forms() {
-            Kernel::ParallelForms => forms.found(number)?,
-            _ => {
-                let [value, gradient @ ..]: [Affine; 4] = forms.found(number)?;
-                [value, along(&rays.directions, &gradient)]
-            }
-        };
-        let form = Form::affine(rays, slab.reach, unit, &value, &slope);
-        (!form.is_vague()).then_some(form)
+        let rays = self.beam(slab.beam);
+        let forms = self.forms_found(rays, number);
+        let form = forms.map(|[value, slope]| Form::affine(rays, slab.reach, unit, &value, &slope));
+        match form.filter(Form::is_known) {
+            Some(form) => (!form.is_vague()).then_some(form),
+            None => (rays.area.side() > VAGUE).then(|| Form::unknown(slab.reach)),
+        }
+    }
+
+    /// The affine forms of F and its slope along the rays of a beam, those of this number among what was found last.
+    fn forms_found(&self, rays: &Beam, number: usize) -> Option<[Affine; 2]> {
+        let forms = &self.workspace.forms;
+        if self.forms() == Kernel::ParallelForms {
+            return forms.found(number);
+        }
+        let [value, gradient @ ..]: [Affine; 4] = forms.found(number)?;
+        Some([value, along(&rays.directions, &gradient)])
     }
 
     /// Keeps slabs that may hold roots, as far as enclosures of F and its gradient tell.
