@@ -1,7 +1,7 @@
 //! The one table of operations.
 //!
-//! Parser, printer, derivatives, interpreter, native code, intervals and tests all read it. To add an operation, add a
-//! variant to [`Operation`], a row to [`table`], its interval extension to [`crate::interval`], and cases to `testdata/`.
+//! Parser, printer, derivatives, interpreter, native code, intervals and tests all read it. `CONTRIBUTING.md` says where
+//! else a new operation is told of.
 
 mod derivative;
 mod squaring;
