@@ -110,7 +110,7 @@ and `octree` prepare their cells on all.
 - *Undecided* rays are those that the method leaves open.
 - The *error* is the largest |t − t*| / max(1, |t*|) over the hits and touches found, t* being the oracle's hit. `certified` encloses roots to 10⁻¹² where
   rounding lets it: not where an exponential overflows in front of the root (`overflow_diff`), nor far from the origin (`far_sphere_expanded`).
-- *Evaluations* are of F at points for the sampling methods, of F or of F and its gradient over boxes for `certified`,
+- *Evaluations* are of F at points, and for `certified` of F or of F and its gradient over boxes as well,
   preprocessing included. Time includes it too, but not the compilation of kernels.
 ";
 

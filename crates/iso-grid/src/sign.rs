@@ -1,4 +1,4 @@
-//! The sign of F − C, as the paper's methods see it.
+//! The sign of F − C where nothing is known but its values in doubles.
 
 use std::ops::BitOr;
 
