@@ -32,7 +32,8 @@ impl Line<'_> {
         root
     }
 
-    /// What lies within `tolerance` of where doubles have the root of `stretch`, if F certainly has unlike signs at its ends; else all of it.
+    /// A part of `stretch` no longer than `tolerance` around where doubles have its root, if F certainly has unlike signs at both ends; else all of
+    /// it.
     fn narrowed_by_doubles(&mut self, stretch: Span, tolerance: f64) -> Span {
         let tolerance = tolerance.max(0.0);
         let root = self.likely_root(stretch, tolerance);
