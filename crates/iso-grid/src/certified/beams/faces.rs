@@ -135,9 +135,8 @@ impl Subdivision<'_> {
     /// Goes on with a part on which F has the sign of one function.
     fn follow_face(&mut self, part: &Part, outline: &Outline) {
         let part = Part { kernels: outline.kernels, form: outline.form, ..*part };
-        let is_monotone = part.form.is_monotone();
-        let Some(part) = (if is_monotone { part.narrowed() } else { Some(part) }) else { return };
-        if is_monotone && self.follow_even(&part) {
+        let Some(part) = part.narrowed() else { return };
+        if self.follow_even(&part) {
             return;
         }
         let face = self.face(&part, outline);

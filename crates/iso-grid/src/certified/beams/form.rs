@@ -7,6 +7,7 @@ use iso_expr::{Decorated, Decoration, Interval};
 use super::beam::Beam;
 use super::spread::Spread;
 use crate::Span;
+use crate::area::Area;
 use crate::batch::Affine;
 
 /// A few roundings, relative to what is rounded: more than any sum here takes.
@@ -48,6 +49,11 @@ impl Ball {
     /// Whether zero is certainly not one of the numbers.
     pub(super) fn excludes_zero(self) -> bool {
         self.middle.abs() > self.radius && self.radius < f64::INFINITY
+    }
+
+    /// Whether the numbers are much alike, as slopes are by which rays can be followed each for its own.
+    fn is_even(self) -> bool {
+        self.radius < UNEVEN * self.middle.abs()
     }
 
     /// The numbers as an interval.
@@ -132,7 +138,9 @@ pub(super) struct Form {
     incline: Ball,
     /// The derivative of F along every ray of the beam.
     pub(super) slope: Ball,
-    /// How the slope changes with t, about; 0 where that is not known.
+    /// How the slope changes with column and row, 0 where that is not known.
+    slope_across: [f64; 2],
+    /// How the slope changes with t, likewise.
     pub(super) turn: f64,
     /// How far slopes may be from changing evenly with column, row and t, about.
     pub(super) sway: f64,
@@ -171,6 +179,7 @@ impl Form {
             by_row: by_row.middle,
             incline: slope,
             slope,
+            slope_across: [0.0; 2],
             turn: 0.0,
             sway: slope.radius,
             across: (1.0 + ROUNDING) * (known + vague),
@@ -200,6 +209,7 @@ impl Form {
             // The quotient may underflow, and then is multiplied by as much as the stretch is long.
             incline: Ball { middle: value.slopes.z / unit, radius: 0.0 }.widened(f64::MIN_POSITIVE),
             slope: Ball::of(slope),
+            slope_across: [each(slope.slopes.x, beam.radii[0]), each(slope.slopes.y, beam.radii[1])],
             turn: slope.slopes.z / unit,
             sway: slope.rest,
             across: (1.0 + ROUNDING) * across,
@@ -223,6 +233,7 @@ impl Form {
             by_row: 0.0,
             incline: nothing,
             slope: nothing,
+            slope_across: [0.0; 2],
             turn: 0.0,
             sway: f64::INFINITY,
             across: f64::INFINITY,
@@ -264,13 +275,63 @@ impl Form {
 
     /// Whether F is monotone with slopes so alike that the beam's rays can be followed each for its own.
     pub(super) fn is_even(&self) -> bool {
-        self.slope.radius < UNEVEN * self.slope.middle.abs()
+        self.slope.is_even()
     }
 
-    /// Where all roots lie, if F is monotone.
+    /// Whether slopes are likely to be found so alike in a span.
+    pub(super) fn is_even_within(&self, span: Span) -> bool {
+        let (middle, half) = (0.5 * (span.start + span.end) - self.t, 0.5 * (span.end - span.start));
+        let Ball { middle: slope, radius } = self.slope;
+        let turn = self.turn.abs() * (self.length() - half);
+        Ball { middle: slope + middle * self.turn, radius: radius - turn }.is_even()
+    }
+
+    /// Where all roots lie.
     pub(super) fn roots(&self) -> Interval {
-        let value = self.value.widened(self.across).interval();
-        Interval::point(self.t).minus(value.over(self.incline.interval()))
+        let (value, incline) = (self.value.widened(self.across), self.incline);
+        let size = incline.middle.abs();
+        let least = size - incline.radius;
+        if least <= 0.0 {
+            return Interval::ENTIRE;
+        }
+        // How far from t they are, to the side on which the middle one is.
+        let far = (value.middle.abs() + value.radius) / least;
+        let near = value.middle.abs() - value.radius;
+        let near = near / if near < 0.0 { least } else { size + incline.radius };
+        let rounding = ROUNDING * (self.t + far);
+        let (near, far) = (near - rounding, far + rounding);
+        match (value.middle < 0.0) == (incline.middle < 0.0) {
+            true => Interval { lo: self.t - far, hi: self.t - near },
+            false => Interval { lo: self.t + near, hi: self.t + far },
+        }
+    }
+
+    /// What is left of a stretch where roots may lie; it ends before it starts where none do.
+    pub(super) fn narrow(&self, stretch: Span) -> Span {
+        let roots = self.roots();
+        // Where nothing is known these are no numbers.
+        Span { start: stretch.start.max(roots.lo), end: stretch.end.min(roots.hi) }
+    }
+
+    /// What it says of the rays in a part of its beam.
+    pub(super) fn on(&self, beam: &Beam, area: Area) -> Self {
+        let (column, row) = (area.offset_of_first(), beam.area.offset_of_first());
+        let offset = [column.0 - row.0, column.1 - row.1];
+        let sum = |by: [f64; 2], of: [f64; 2]| by[0] * of[0] + by[1] * of[1];
+        let (value_across, slope_across) = ([self.by_column, self.by_row], self.slope_across);
+        let less = [beam.radii[0] - area.radii()[0], beam.radii[1] - area.radii()[1]];
+        let fewer = |across: [f64; 2]| sum(across.map(f64::abs), less);
+        let value = Ball { middle: self.value.middle + sum(value_across, offset), ..self.value };
+        let slope = Ball {
+            middle: self.slope.middle + sum(slope_across, offset),
+            radius: self.slope.radius - fewer(slope_across),
+        };
+        Self {
+            value: value.widened(ROUNDING * self.across),
+            slope: slope.widened(ROUNDING * self.slope.radius),
+            across: (1.0 + ROUNDING) * self.across - fewer(value_across),
+            ..*self
+        }
     }
 
     /// About where the roots are on the rays of its beam.
@@ -315,122 +376,4 @@ impl Model {
 }
 
 #[cfg(test)]
-mod tests {
-    use iso_expr::Scratch;
-    use iso_expr::random::Random;
-
-    use super::*;
-    use crate::area::Area;
-    use crate::batch::{FormBatch, PointBatch};
-    use crate::testing::surface_of;
-    use crate::{Kernel, Raster, Surface, Tile};
-
-    const FORMULAS: [&str; 5] = [
-        "(x^2 + 2y^2 + z^2 - 1)^3 - x^2*z^3 - y^2*z^3/9",
-        "1/(x^2 + y^2 + 1) - exp(-(x - z)^2) + 0.3",
-        "sin(2x)cos(y) + sin(y)cos(3z) + sin(z)cos(x)",
-        "sqrt(x^2 + y^2 + 0.1)*z - abs(x - y)",
-        "max(x^2 + y*z - 1, x - z, min(y, x*z))",
-    ];
-
-    fn raster(random: &mut Random, is_parallel: bool) -> Raster {
-        let mut vector = || DVec3::from_array([(); 3].map(|()| random.between(-1.0, 1.0)));
-        let (middle, forward, up) = (3.0 * vector(), vector().normalize(), vector());
-        let right = 0.01 * forward.cross(up).normalize();
-        let down = forward.cross(right);
-        match is_parallel {
-            true => Raster::Parallel { middle, right, down, direction: 0.8 * forward },
-            false => Raster::Spreading { eye: middle, forward, right, down },
-        }
-    }
-
-    /// The forms of F and its slope along the rays of a beam, all in the same `direction` if it is given.
-    fn forms_of(
-        surface: &Surface,
-        (beam, direction): (&Beam, Option<DVec3>),
-        arguments: &[Affine; 3],
-    ) -> Option<[Affine; 2]> {
-        let mut forms = FormBatch::default();
-        forms.push(arguments);
-        let kind = if direction.is_some() { Kernel::ParallelForms } else { Kernel::Forms };
-        forms.evaluate(&**surface.over_points(kind).unwrap(), direction, &mut Scratch::default());
-        if direction.is_some() {
-            return forms.found(0);
-        }
-        let [value, gradient @ ..]: [Affine; 4] = forms.found(0)?;
-        Some([value, along(&beam.directions, &gradient)])
-    }
-
-    /// F at points of rays of a part, and its slope along them, are what the form of the part says.
-    #[test]
-    fn values_and_slopes_are_what_affine_forms_say() {
-        let mut random = Random::new(21);
-        let mut scratch = Scratch::default();
-        let mut closest: [f64; 2] = [0.0; 2];
-        for round in 0..600 {
-            let surface = surface_of(FORMULAS[round % FORMULAS.len()]);
-            let raster = raster(&mut random, round % 2 == 0);
-            let tile = Tile::of(&raster, [random.between(-20.0, 20.0), 3.5], 64, 64);
-            let side = 1 << random.below(6);
-            let area = Area { column: random.below(30), row: random.below(30), width: side, height: side };
-            let beam = Beam::new(&tile, area);
-            let start = random.between(0.0, 3.0);
-            let reach = Span { start, end: start + random.between(0.0, 0.02 * side as f64) };
-            let (arguments, (t, unit)) = beam.forms(reach);
-            let found = forms_of(&surface, (&beam, tile.direction()), &arguments);
-            let Some([value, slope]) = found else { continue };
-            let form = Form::affine(&beam, reach, (t, unit), &value, &slope);
-            let gradients = surface.over_points(Kernel::Gradients).unwrap();
-            for _ in 0..20 {
-                let (column, row) = (area.column + random.below(side), area.row + random.below(side));
-                let ray = tile.ray(column, row);
-                let at = reach.start + random.between(0.0, 1.0) * (reach.end - reach.start);
-                let mut points = PointBatch::default();
-                points.push(ray.at(at));
-                let [value, x, y, z] = points.evaluate(&**gradients, &mut scratch, 4) else {
-                    unreachable!("F and its gradient are four outputs")
-                };
-                let (a, b) = area.offset(column, row);
-                let line = form.value.middle + a * form.by_column + b * form.by_row;
-                let off = (value - (line + (at - form.t) * form.incline.middle)).abs();
-                let slope = DVec3::new(*x, *y, *z).dot(ray.direction);
-                let turn = (slope - form.slope.middle).abs();
-                let slack = 1e-12;
-                let radius = form.value.radius + unit * form.incline.radius;
-                assert!(off <= radius + slack && turn <= form.slope.radius + slack, "{off} {turn} {form:?}");
-                closest = [closest[0].max(off / radius), closest[1].max(turn / form.slope.radius)];
-            }
-        }
-        assert!(closest.iter().all(|closest| *closest > 0.7), "forms hold far more: {closest:?}");
-    }
-
-    /// By second derivatives along the ray in the middle, found by hand.
-    #[test]
-    fn slopes_turn_as_second_derivatives_say() {
-        let mut random = Random::new(22);
-        for is_parallel in [true, false] {
-            let raster = raster(&mut random, is_parallel);
-            let tile = Tile::of(&raster, [0.0, 0.0], 2, 2);
-            let beam = Beam::new(&tile, Area { column: 0, row: 0, width: 2, height: 2 });
-            let DVec3 { x: dx, y: dy, z: dz } = beam.directions.middle;
-            let (arguments, (t, unit)) = beam.forms(Span { start: 1.0, end: 1.001 });
-            let at = beam.origins.middle + t * beam.directions.middle;
-            for (formula, turn) in [
-                ("x^2 + 3y*z", 2.0 * dx * dx + 6.0 * dy * dz),
-                ("x^3 - y", 6.0 * at.x * dx * dx),
-                ("exp(z)", at.z.exp() * dz * dz),
-                ("x + 2y - z", 0.0),
-            ] {
-                let [value, slope] =
-                    forms_of(&surface_of(formula), (&beam, tile.direction()), &arguments).unwrap();
-                let reach = Span { start: 1.0, end: 1.001 };
-                let form = Form::affine(&beam, reach, (t, unit), &value, &slope);
-                // Directions that differ count as uneven.
-                let is_even = form.sway <= 1e-2 * form.slope.radius + 1e-12;
-                assert!(is_even || !is_parallel, "{formula}: {form:?}");
-                let off = (form.turn - turn).abs();
-                assert!(off <= 1e-2 * turn.abs() + 1e-12, "{formula}: {} {turn}", form.turn);
-            }
-        }
-    }
-}
+mod tests;

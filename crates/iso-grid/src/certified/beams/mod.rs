@@ -20,6 +20,7 @@ mod bend;
 mod bows;
 mod bundle;
 mod course;
+mod cuts;
 mod edges;
 mod faces;
 mod form;

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::beam::Beam;
 use super::bundle::{Bundle, Last, Pursuit, Sight};
+use super::cuts::Cut;
 use super::form::{Form, ROUNDING};
 use super::rounding::Rounding;
 use super::sheaf::{Sheaf, Start};
@@ -22,6 +23,9 @@ const LARGEST_COUNTED: usize = 16;
 
 /// A larger beam is cut when more rays are likely to be followed in vain.
 const DOUBTFUL: usize = 16;
+
+/// Small beams are looked at anew where roots may lie on less of what their form holds for.
+const SHORT: f64 = 0.45;
 
 /// Rounding that moves roots so many times less than the tolerance does not matter much: an enclosure has room for it on both sides, and half
 /// as much is left, for the last step towards a root leaves next to nothing.
@@ -47,33 +51,19 @@ impl Sight {
     }
 }
 
-impl Part {
-    /// What is left of a part on which F is monotone, where roots may lie.
-    pub(super) fn narrowed(&self) -> Option<Self> {
-        let (roots, stretch) = (self.form.roots(), self.stretch);
-        if roots.is_empty() {
-            // The form tells nothing of where they are, although F has a slope.
-            return Some(Self { ..*self });
-        }
-        let stretch = Span { start: stretch.start.max(roots.lo), end: stretch.end.min(roots.hi) };
-        (stretch.start <= stretch.end).then_some(Self { stretch, ..*self })
-    }
-}
-
 impl Subdivision<'_> {
     /// Goes on with a stretch on which F is monotone along every ray.
     pub(super) fn follow(&mut self, part: &Part) {
-        let Some(narrowed) = part.narrowed() else { return };
-        if self.follow_even(&narrowed) || self.follow_edge(&narrowed) {
+        if self.follow_even(part) || self.follow_edge(part) {
             return;
         }
-        let [before, after] = [part, &narrowed].map(|part| part.stretch.end - part.stretch.start);
+        let [whole, left] = [part.form.reach, part.stretch].map(|span| span.end - span.start);
         if !self.is_small(part) {
-            self.divide_beam(&narrowed);
-        } else if after < 0.5 * before {
-            self.examine(part.beam..part.beam + 1, (narrowed.stretch, 1), part.kernels);
+            self.divide_beam(part);
+        } else if left < SHORT * whole {
+            self.examine(&[Cut { beam: part.beam, stretch: part.stretch, slices: 1 }], part.kernels);
         } else {
-            self.divide(&narrowed);
+            self.divide(part);
         }
     }
 

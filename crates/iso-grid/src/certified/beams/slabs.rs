@@ -1,11 +1,10 @@
 //! Slabs: stretches of beams in boxes, and which of them may hold roots.
 
-use std::ops::Range;
-
 use glam::DVec3;
 use iso_expr::{Composition, Decorated, Decoration, Interval};
 
 use super::beam::Beam;
+use super::cuts::Cut;
 use super::form::{Form, Gradient, along};
 use super::grazing::{LARGE, SIZES};
 use super::subdivision::{Part, Subdivision};
@@ -78,25 +77,20 @@ struct Behind {
     reach: Span,
 }
 
-/// `count` parts of `span`, equally long.
-fn slices(span: Span, count: usize) -> impl DoubleEndedIterator<Item = Span> {
-    let cut = move |at: usize| {
-        let part = at as f64 / count as f64;
-        if at == count { span.end } else { span.start + part * (span.end - span.start) }
-    };
-    (0..count).map(move |slice| Span { start: cut(slice), end: cut(slice + 1) })
-}
-
 impl Subdivision<'_> {
-    /// Looks at a stretch of all beams, cut into `count`, and keeps the stretches that may hold roots. Kernels of the number
-    /// `kernels` may hold there.
-    pub(super) fn examine(&mut self, beams: Range<u32>, (stretch, count): (Span, usize), kernels: u32) {
+    /// Looks at slices of beams and keeps those that may hold roots. Kernels of the number `kernels` may hold there.
+    pub(super) fn examine(&mut self, cuts: &[Cut], kernels: u32) {
         let mut slabs = std::mem::take(&mut self.memory.slabs);
         slabs.clear();
-        for number in beams {
-            let beam = self.beam(number);
-            for stretch in slices(stretch, count).rev() {
-                slabs.extend(Slab::new((number, beam), stretch, self.least_overlap, &self.certified.region));
+        for cut in cuts {
+            let beam = self.beam(cut.beam);
+            for stretch in cut.slices().rev() {
+                slabs.extend(Slab::new(
+                    (cut.beam, beam),
+                    stretch,
+                    self.least_overlap,
+                    &self.certified.region,
+                ));
             }
         }
         let are_several = self.certified.places.are_asked() || self.certified.kernels.are_cut();

@@ -22,19 +22,12 @@ use crate::area::Area;
 use crate::certified::Certified;
 use crate::certified::cells::Cell;
 use crate::certified::clip::Clip;
-use crate::certified::kernels::{BATCH, Kernels};
+use crate::certified::kernels::Kernels;
 use crate::certified::line::bounds_along;
 use crate::lanes::{ROW, Row};
 use crate::normals::{Asked, answer};
 use crate::raster::Rays;
 use crate::{Hit, Kernel, Outcome, Outcomes, Span, Tile, Traced, Workspace};
-
-/// Into how many stretches a beam is cut at most.
-const SLICES: usize = BATCH;
-
-/// A stretch is cut, and not the beam, when it is longer than this many times the beam's width; and then into stretches
-/// about so long.
-const LONG: f64 = 1.5;
 
 /// Beams of so many columns and rows are not cut further, and left to their rays where F is not monotone.
 pub(super) const SMALLEST: usize = 2;
@@ -214,6 +207,7 @@ impl<'a> Subdivision<'a> {
             if !self.is_open(self.beam(part.beam).area) {
                 continue;
             }
+            let Some(part) = part.narrowed() else { continue };
             if self.work_left == 0 {
                 self.search_each(&part);
             } else if part.form.is_monotone() {
@@ -296,29 +290,6 @@ impl<'a> Subdivision<'a> {
             // Not searched, for most areas are open or closed as a whole, and this is done side by side.
             open.iter().fold(false, |any, is_open| any | is_open)
         })
-    }
-
-    /// Cuts a stretch when it is longer than the beam is wide, or else the beam.
-    pub(super) fn divide(&mut self, part: &Part) {
-        let beam = self.beam(part.beam);
-        let elongation = beam.elongation(part.stretch);
-        let is_smallest = beam.area.side() <= SMALLEST;
-        if elongation > LONG && elongation.is_finite() {
-            let count = (elongation / LONG).ceil().min(SLICES as f64) as usize;
-            self.examine(part.beam..part.beam + 1, (part.stretch, count), part.kernels);
-        } else if !is_smallest {
-            self.divide_beam(part);
-        } else {
-            self.search_each(part);
-        }
-    }
-
-    /// Cuts a beam.
-    pub(super) fn divide_beam(&mut self, Part { beam, stretch, kernels, .. }: &Part) {
-        let first = self.memory.beams.len() as u32;
-        let area = self.beam(*beam).area;
-        self.memory.beams.extend(area.quarters().map(|quarter| Beam::new(&self.tile, quarter)));
-        self.examine(first..self.memory.beams.len() as u32, (*stretch, 1), *kernels);
     }
 
     /// Gives kernels a number.
