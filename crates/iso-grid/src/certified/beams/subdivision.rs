@@ -308,13 +308,17 @@ impl<'a> Subdivision<'a> {
         known.unwrap_or_else(|| self.number_of(kernels))
     }
 
-    /// Leaves a part to the search along single rays.
+    /// Leaves a part to the search along single rays, of each of which only as much is searched as roots may lie on.
     pub(super) fn search_each(&mut self, part: &Part) {
-        let area = self.beam(part.beam).area;
-        for row in area.rows() {
-            for column in area.columns() {
+        let beam = *self.beam(part.beam);
+        for row in beam.area.rows() {
+            for column in beam.area.columns() {
                 if self.memory.open[row * self.tile.width() + column] {
-                    self.search_one((column, row), part.stretch, part.known());
+                    let form = part.form.on(&beam, Area { column, row, width: 1, height: 1 });
+                    let stretch = form.narrow(part.stretch);
+                    if !form.excludes_zero() && stretch.start <= stretch.end {
+                        self.search_one((column, row), stretch, part.known());
+                    }
                 }
             }
         }
