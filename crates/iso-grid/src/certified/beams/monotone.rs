@@ -24,8 +24,8 @@ const LARGEST_COUNTED: usize = 16;
 /// A larger beam is cut when more rays are likely to be followed in vain.
 const DOUBTFUL: usize = 16;
 
-/// Small beams are looked at anew where roots may lie on less of what their form holds for.
-const SHORT: f64 = 0.45;
+/// Small beams are looked at anew where roots may lie on less than this share of what was looked at.
+const SHORT: f64 = 0.5;
 
 /// Rounding that moves roots so many times less than the tolerance does not matter much: an enclosure has room for it on both sides, and half
 /// as much is left, for the last step towards a root leaves next to nothing.
@@ -52,12 +52,12 @@ impl Sight {
 }
 
 impl Subdivision<'_> {
-    /// Goes on with a stretch on which F is monotone along every ray.
-    pub(super) fn follow(&mut self, part: &Part) {
+    /// Goes on with what is left of a part that was `examined`, on which F is monotone along every ray.
+    pub(super) fn follow(&mut self, part: &Part, examined: Span) {
         if self.follow_even(part) || self.follow_edge(part) {
             return;
         }
-        let [whole, left] = [part.form.reach, part.stretch].map(|span| span.end - span.start);
+        let [whole, left] = [examined, part.stretch].map(|span| span.end - span.start);
         if !self.is_small(part) {
             self.divide_beam(part);
         } else if left < SHORT * whole {

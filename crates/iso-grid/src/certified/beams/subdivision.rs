@@ -207,11 +207,12 @@ impl<'a> Subdivision<'a> {
             if !self.is_open(self.beam(part.beam).area) {
                 continue;
             }
+            let examined = part.stretch;
             let Some(part) = part.narrowed() else { continue };
             if self.work_left == 0 {
                 self.search_each(&part);
             } else if part.form.is_monotone() {
-                self.follow(&part);
+                self.follow(&part, examined);
             } else if !self.follow_edge(&part) && !self.follow_bent(&part) {
                 self.divide(&part);
             }
