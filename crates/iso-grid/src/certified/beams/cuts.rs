@@ -36,8 +36,7 @@ impl Cut {
 impl Part {
     /// What is left of a part where roots may lie.
     pub(super) fn narrowed(&self) -> Option<Self> {
-        let stretch = self.form.narrow(self.stretch);
-        (stretch.start <= stretch.end).then_some(Self { stretch, ..*self })
+        self.form.narrow(self.stretch).map(|stretch| Self { stretch, ..*self })
     }
 }
 
@@ -63,10 +62,7 @@ impl Subdivision<'_> {
         let beam = *self.beam(*number);
         for area in beam.area.quarters() {
             let form = form.on(&beam, area);
-            let stretch = form.narrow(*stretch);
-            if form.excludes_zero() || stretch.start > stretch.end {
-                continue;
-            }
+            let Some(stretch) = form.narrow(*stretch) else { continue };
             let quarter = Beam::new(&self.tile, area);
             let is_cut =
                 quarter.elongation(stretch) > LONG && form.is_known() && !form.is_even_within(stretch);

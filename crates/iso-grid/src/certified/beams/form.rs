@@ -306,17 +306,18 @@ impl Form {
         }
     }
 
-    /// What is left of a stretch where roots may lie; it ends before it starts where none do.
-    pub(super) fn narrow(&self, stretch: Span) -> Span {
+    /// What is left of a stretch where roots may lie; `None` where none do.
+    pub(super) fn narrow(&self, stretch: Span) -> Option<Span> {
         let roots = self.roots();
-        // Where nothing is known these are no numbers.
-        Span { start: stretch.start.max(roots.lo), end: stretch.end.min(roots.hi) }
+        // Where quotients overflow these may be no numbers, and nothing is left out.
+        let left = Span { start: stretch.start.max(roots.lo), end: stretch.end.min(roots.hi) };
+        (left.start <= left.end && !self.excludes_zero()).then_some(left)
     }
 
     /// What it says of the rays in a part of its beam.
     pub(super) fn on(&self, beam: &Beam, area: Area) -> Self {
-        let (column, row) = (area.offset_of_first(), beam.area.offset_of_first());
-        let offset = [column.0 - row.0, column.1 - row.1];
+        let (there, middle) = (area.offset_of_first(), beam.area.offset_of_first());
+        let offset = [there.0 - middle.0, there.1 - middle.1];
         let sum = |by: [f64; 2], of: [f64; 2]| by[0] * of[0] + by[1] * of[1];
         let (value_across, slope_across) = ([self.by_column, self.by_row], self.slope_across);
         let less = [beam.radii[0] - area.radii()[0], beam.radii[1] - area.radii()[1]];

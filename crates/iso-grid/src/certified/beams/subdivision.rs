@@ -316,8 +316,7 @@ impl<'a> Subdivision<'a> {
             for column in beam.area.columns() {
                 if self.memory.open[row * self.tile.width() + column] {
                     let form = part.form.on(&beam, Area { column, row, width: 1, height: 1 });
-                    let stretch = form.narrow(part.stretch);
-                    if !form.excludes_zero() && stretch.start <= stretch.end {
+                    if let Some(stretch) = form.narrow(part.stretch) {
                         self.search_one((column, row), stretch, part.known());
                     }
                 }
