@@ -24,6 +24,9 @@ pub(crate) struct Mask<S: Simd> {
     mask: S::m64s,
 }
 
+/// Whether processors have an instruction for the greater of two numbers, and for the lesser, that takes the second where one is NaN.
+const TAKES_SECOND: bool = cfg!(any(target_arch = "x86", target_arch = "x86_64"));
+
 /// Into how many parts a row falls.
 #[inline(always)]
 pub(crate) const fn parts<S: Simd>() -> usize {
@@ -110,17 +113,30 @@ impl<S: Simd> Lanes<S> {
     /// The numbers, or others where these are greater; NaN where these numbers are NaN.
     #[inline(always)]
     pub(crate) fn at_least(self, least: Self) -> Self {
+        if TAKES_SECOND && !S::IS_SCALAR {
+            return Self { numbers: self.simd.max_f64s(least.numbers, self.numbers), ..self };
+        }
         self.is_less(least).select(least, self)
     }
 
     /// The numbers, or others where these are less; NaN where these numbers are NaN.
     #[inline(always)]
     pub(crate) fn at_most(self, most: Self) -> Self {
+        if TAKES_SECOND && !S::IS_SCALAR {
+            return Self { numbers: self.simd.min_f64s(most.numbers, self.numbers), ..self };
+        }
         most.is_less(self).select(most, self)
     }
 }
 
 impl<S: Simd> Mask<S> {
+    /// So of none.
+    #[inline(always)]
+    pub(crate) fn none(simd: S) -> Self {
+        let zero = Lanes::all(simd, 0.0);
+        zero.is_less(zero)
+    }
+
     /// The numbers of the first where this is so, and those of the second elsewhere.
     #[inline(always)]
     pub(crate) fn select(self, yes: Lanes<S>, no: Lanes<S>) -> Lanes<S> {

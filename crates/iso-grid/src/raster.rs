@@ -175,19 +175,18 @@ impl<'a> Tile<'a> {
         }
     }
 
-    /// The rays in these columns and rows.
+    /// Puts the rays in these columns and rows in place of others.
     #[inline(always)]
-    pub(crate) fn row<S: Simd>(&self, simd: S, columns: &Row, rows: &Row) -> RayRow {
-        let mut found = RayRow::default();
+    pub(crate) fn put_rays<S: Simd>(&self, simd: S, [columns, rows]: [&Row; 2], place: &mut RayRow) {
+        let RayRow { origins, directions } = place;
         match self.rays {
             Rays::Raster { raster, across, along } => {
                 for part in 0..parts::<S>() {
                     let across = Lanes::all(simd, across) + Lanes::of(simd, columns, part);
                     let along = Lanes::all(simd, along) + Lanes::of(simd, rows, part);
-                    let [origins, directions] = raster.rays(simd, [across, along]);
-                    for axis in 0..3 {
-                        origins[axis].put(&mut found.origins[axis], part);
-                        directions[axis].put(&mut found.directions[axis], part);
+                    let rays = raster.rays(simd, [across, along]);
+                    for (vectors, found) in [&mut *origins, &mut *directions].into_iter().zip(rays) {
+                        vectors.iter_mut().zip(found).for_each(|(row, numbers)| numbers.put(row, part));
                     }
                 }
             }
@@ -195,12 +194,18 @@ impl<'a> Tile<'a> {
                 for lane in 0..ROW {
                     let Ray { origin, direction } = self.ray(columns[lane] as usize, rows[lane] as usize);
                     for axis in 0..3 {
-                        found.origins[axis][lane] = origin[axis];
-                        found.directions[axis][lane] = direction[axis];
+                        (origins[axis][lane], directions[axis][lane]) = (origin[axis], direction[axis]);
                     }
                 }
             }
         }
+    }
+
+    /// The rays in these columns and rows.
+    #[inline(always)]
+    pub(crate) fn row<S: Simd>(&self, simd: S, columns: &Row, rows: &Row) -> RayRow {
+        let mut found = RayRow::default();
+        self.put_rays(simd, [columns, rows], &mut found);
         found
     }
 

@@ -110,6 +110,9 @@ impl Beam {
     }
 }
 
+/// Rays of areas of so many columns or rows are counted one by one.
+const COUNTED: usize = 8;
+
 /// How many rays of a part of a tile meet the region. As both are convex, rays whose corners meet it all do.
 pub(super) fn count_in(region: &Region, tile: &Tile<'_>, area: Area) -> u64 {
     let meets = |(column, row): (usize, usize)| region.clip(&tile.ray(column, row)).is_some();
@@ -117,8 +120,12 @@ pub(super) fn count_in(region: &Region, tile: &Tile<'_>, area: Area) -> u64 {
     if area.corners().into_iter().all(meets) {
         return count;
     }
+    if area.side() <= COUNTED {
+        let columns = |row: usize| area.columns().filter(move |column| meets((*column, row))).count() as u64;
+        return area.rows().map(columns).sum();
+    }
     let misses = |passage: Span| passage.start > passage.end;
-    if count == 1 || Beam::new(tile, area).passage(region).is_some_and(misses) {
+    if Beam::new(tile, area).passage(region).is_some_and(misses) {
         return 0;
     }
     area.quarters().map(|quarter| count_in(region, tile, quarter)).sum()

@@ -7,7 +7,7 @@ use pulp::{Simd, WithSimd};
 use super::form::ROUNDING;
 use super::pixels::{STEPS, state};
 use super::sheaf::Start;
-use crate::lanes::{Lanes, ROW, Row, parts};
+use crate::lanes::{Lanes, Mask, ROW, Row, parts};
 use crate::normals::{Asked, put_units};
 use crate::point_rows::PointRows;
 use crate::raster::RayRow;
@@ -23,18 +23,20 @@ pub(crate) struct Bundle {
     rays: RayRow,
     /// Where the part's certificate holds inside the region: starts and ends.
     pub(super) reach: [Row; 2],
-    /// Where a root is looked for: everything before it is free of roots. In the end, what encloses it.
+    /// Where a root is looked for: everything before it is free of roots.
     pub(super) wanted: [Row; 2],
-    /// Where F is to be taken next, inside `reach`. In the end, about where the root is.
-    pub(super) t: Row,
+    /// Where F is to be taken next, inside `reach`.
+    t: Row,
     /// F at the last place where its slope was taken, one over the slope, and how far t is from there: infinitely far, with the part's slope in the
     /// middle, before there is any.
     value: Row,
     inverse: Row,
     step: Row,
-    /// How far t is from where F was taken at the last conclusion.
-    moved: Row,
     pub(super) state: Row,
+    /// Of rays that have a root, about where it is, what encloses it, and how far it is from where F was taken last.
+    pub(super) root: Row,
+    pub(super) bracket: [Row; 2],
+    moved: Row,
     /// Whether there are rays with a root whose normals were not found on the way, where they are wanted.
     pub(super) lacks_normals: bool,
 }
@@ -51,18 +53,6 @@ enum Need {
     Last,
     /// Its value and its slope, to come nearer.
     Slopes,
-}
-
-impl Need {
-    /// That of a bundle, where that of each ray is the number at which it stands above.
-    #[inline(always)]
-    fn of(greatest: f64) -> Self {
-        match greatest {
-            2.0.. => Self::Slopes,
-            1.0.. => Self::Last,
-            _ => Self::Nothing,
-        }
-    }
 }
 
 /// What a double computed for F says about the root, all over a part.
@@ -84,8 +74,14 @@ pub(super) struct Sight {
 }
 
 impl Bundle {
-    /// Narrows where roots are wanted, and where the certificate holds, along each open ray to what is `within`, given its column and row.
-    /// A ray without it is left out.
+    /// Makes these the stretches in which roots are wanted, and in which the certificate holds, along all rays.
+    #[inline(always)]
+    pub(super) fn look_along(&mut self, [wanted, reach]: [Span; 2]) {
+        let all = |Span { start, end }| [[start; ROW], [end; ROW]];
+        (self.wanted, self.reach) = (all(wanted), all(reach));
+    }
+
+    /// Narrows those of each open ray to what is `within`, given its column and row. A ray without it is left out.
     pub(super) fn clip(&mut self, mut within: impl FnMut(usize, usize) -> Option<[Span; 2]>) {
         for lane in 0..ROW {
             if self.state[lane] != state::OPEN {
@@ -113,8 +109,9 @@ impl Bundle {
 
     /// The rays that have a root, and what encloses it.
     pub(super) fn hits(&self) -> impl Iterator<Item = (usize, Hit)> {
-        self.in_state(|state| state == state::HIT)
-            .map(|(lane, bracket)| (self.places[lane] as usize, Hit { t: self.t[lane], bracket }))
+        self.in_state(|state| state == state::HIT).map(|lane| {
+            (self.places[lane] as usize, Hit { t: self.root[lane], bracket: along(&self.bracket, lane) })
+        })
     }
 
     /// The rays that have a root and no normal among these, where it is wanted, and where.
@@ -126,13 +123,12 @@ impl Bundle {
     /// The rays that may have a root, which is to be looked for otherwise, and where.
     pub(super) fn lost(&self) -> impl Iterator<Item = (usize, Span)> {
         self.in_state(|state| state == state::LOST || state == state::OPEN)
-            .map(|(lane, wanted)| (self.places[lane] as usize, wanted))
+            .map(|lane| (self.places[lane] as usize, along(&self.wanted, lane)))
     }
 
-    /// The lanes of the rays in some state, and where their roots are wanted.
-    fn in_state(&self, is_meant: impl Fn(f64) -> bool) -> impl Iterator<Item = (usize, Span)> {
-        let wanted = |lane: usize| Span { start: self.wanted[0][lane], end: self.wanted[1][lane] };
-        (0..ROW).filter(move |lane| is_meant(self.state[*lane])).map(move |lane| (lane, wanted(lane)))
+    /// The lanes of the rays in some state.
+    fn in_state(&self, is_meant: impl Fn(f64) -> bool) -> impl Iterator<Item = usize> {
+        (0..ROW).filter(move |lane| is_meant(self.state[*lane]))
     }
 
     /// Begins with its open rays, where they are likely to have a root; says whether there are any.
@@ -142,24 +138,28 @@ impl Bundle {
         for lane in 0..ROW {
             self.places[lane] = self.rows[lane] * width + self.columns[lane];
         }
-        let all = |number| Lanes::all(simd, number);
-        let mut most_open = all(0.0);
+        let mut is_any_open = Mask::none(simd);
         for part in 0..parts::<S>() {
             let at = |row: &Row| Lanes::of(simd, row, part);
             let t = start.at_all([at(&columns), at(&rows)]);
             t.between(at(&self.reach[0]), at(&self.reach[1])).put(&mut self.t, part);
-            most_open = at(&self.state).is_same(all(state::OPEN)).select(all(1.0), most_open);
+            is_any_open = is_any_open | self.are_open(simd, part);
         }
-        let are_open = most_open.greatest() > 0.0;
+        let are_open = is_any_open.is_any();
         if are_open {
-            self.rays = tile.row(simd, &columns, &rows);
+            tile.put_rays(simd, [&columns, &rows], &mut self.rays);
             (self.step, self.inverse) = ([f64::INFINITY; ROW], [sight.inverse; ROW]);
         }
         are_open
     }
 
+    #[inline(always)]
+    fn are_open<S: Simd>(&self, simd: S, part: usize) -> Mask<S> {
+        Lanes::of(simd, &self.state, part).is_same(Lanes::all(simd, state::OPEN))
+    }
+
     /// A step towards the roots, by the values and the slopes of F at t: to the root of a parabola that bends as slopes turn at first, and then by
-    /// inverse cubic interpolation (Hermite) between there and the last place. By the middle of the part's slopes where F would have one that it does
+    /// inverse cubic interpolation (Hermite) between there and the last place. By the nearest of the part's slopes where F would have one that it does
     /// not have. Says what is needed next.
     #[inline(always)]
     fn approach<S: Simd>(
@@ -169,15 +169,15 @@ impl Bundle {
         (sight, is_first): (&Sight, bool),
     ) -> Need {
         let all = |number| Lanes::all(simd, number);
-        let (one, middle) = (all(1.0), all(sight.inverse));
-        let most = all(sight.unevenness * sight.inverse.abs());
-        let [last, another] = [Need::Last, Need::Slopes].map(|need| all(f64::from(need as u8)));
-        let mut needed = last;
+        let one = all(1.0);
+        let most = sight.unevenness * sight.inverse.abs();
+        let [least, most] = [sight.inverse - most, sight.inverse + most].map(all);
+        let near = all(NEAR * sight.tolerance);
+        let mut is_any_far = Mask::none(simd);
         for part in 0..parts::<S>() {
             let at = |row: &Row| Lanes::of(simd, row, part);
             let (t, value, before) = (at(&self.t), at(values), at(&self.step));
-            let computed = one / at(slopes);
-            let inverse = (computed - middle).abs().is_at_most(most).select(computed, middle);
+            let inverse = (one / at(slopes)).between(least, most);
             let linear = value * inverse;
             // How far the next place is from the root, about, as part of the step and of its square.
             let (bend, [by_step, by_square]) = if is_first {
@@ -201,67 +201,84 @@ impl Bundle {
             let next = nearer.between(at(&self.reach[0]), at(&self.reach[1]));
             let step = next - t;
             let rest = step.abs() * (by_step + step.abs() * by_square);
-            let is_open = at(&self.state).is_same(all(state::OPEN));
-            let is_far = !(rest * all(sight.unevenness)).is_at_most(all(NEAR * sight.tolerance));
-            needed = (is_open & is_far).select(another, needed);
-            is_open.put(next, &mut self.t, part);
+            let is_far = !(rest * all(sight.unevenness)).is_at_most(near);
+            is_any_far = is_any_far | (self.are_open(simd, part) & is_far);
+            next.put(&mut self.t, part);
             value.put(&mut self.value, part);
             inverse.put(&mut self.inverse, part);
             step.put(&mut self.step, part);
         }
-        Need::of(needed.greatest())
+        if is_any_far.is_any() { Need::Slopes } else { Need::Last }
     }
 
-    /// One step of the interval Newton method, for all slopes of the part at once, where `values` were computed for F at t. All
-    /// roots in reach lie in its result, and if that lies in reach itself, there is one. Where it is about, the last slopes tell. Says what is
-    /// needed next.
+    /// One step of the interval Newton method, for all slopes of the part at once, where `values` were computed for F at t: the first one, or
+    /// another. All roots in reach lie in its result, and if that lies in reach itself, there is one. Where it is about, the last slopes tell. Says
+    /// what is needed next.
     #[inline(always)]
-    fn conclude<S: Simd>(&mut self, simd: S, values: &Row, sight: &Sight) -> Need {
+    fn conclude<S: Simd>(&mut self, simd: S, values: &Row, (sight, is_first): (&Sight, bool)) -> Need {
         let all = |number| Lanes::all(simd, number);
         let [free, open] = [all(state::FREE), all(state::OPEN)];
         let [hit, lost] = [all(state::HIT), all(state::LOST)];
-        let [nothing, last, another] =
-            [Need::Nothing, Need::Last, Need::Slopes].map(|need| all(f64::from(need as u8)));
-        let mut needed = nothing;
+        let mut is_any_open = Mask::none(simd);
         for part in 0..parts::<S>() {
             let at = |row: &Row| Lanes::of(simd, row, part);
-            let (t, value, before) = (at(&self.t), at(values), at(&self.state));
-            let wanted = [at(&self.wanted[0]), at(&self.wanted[1])];
-            let reach = [at(&self.reach[0]), at(&self.reach[1])];
+            let (t, value) = (at(&self.t), at(values));
 
             let offset = value * all(sight.inverse);
             let middle = t - offset;
             let rounding = all(ROUNDING) * (t + offset.abs());
             let radius = offset.abs() * all(sight.unevenness) + all(sight.blur) + rounding;
             let root = [middle - radius, middle + radius];
-            let is_free = root[1].is_less(wanted[0]) | wanted[1].is_less(root[0]);
+            let is_free = root[1].is_less(at(&self.wanted[0])) | at(&self.wanted[1]).is_less(root[0]);
             let is_narrow = (radius + radius).is_at_most(all(sight.tolerance));
-            let is_inside = reach[0].is_at_most(root[0]) & root[1].is_at_most(reach[1]);
+            let is_inside = at(&self.reach[0]).is_at_most(root[0]) & root[1].is_at_most(at(&self.reach[1]));
+            let decided = is_narrow.select(is_inside.select(hit, lost), open);
 
-            let nearer = t - value * at(&self.inverse);
-            let next = nearer.between(reach[0], reach[1]);
-            let (step, since_slopes) = (next - t, at(&self.step));
+            let was_open = self.are_open(simd, part);
+            let state = was_open.select(is_free.select(free, decided), at(&self.state));
+            is_any_open = is_any_open | state.is_same(open);
+            state.put(&mut self.state, part);
+            let nearest = (t - value * at(&self.inverse)).between(root[0], root[1]);
+            // What is not known yet may be written over.
+            let put = |row: &mut Row, numbers: Lanes<S>| match is_first {
+                true => numbers.put(row, part),
+                false => was_open.put(numbers, row, part),
+            };
+            put(&mut self.root, nearest);
+            put(&mut self.moved, (nearest - t).abs());
+            self.bracket.iter_mut().zip(root).for_each(|(row, end)| put(row, end));
+        }
+        if is_any_open.is_any() { self.go_on(simd, values, sight) } else { Need::Nothing }
+    }
+
+    /// A step towards the roots of rays that are still open, by the values of F at t and its last slopes. Says what is needed next.
+    #[cold]
+    #[inline(always)]
+    fn go_on<S: Simd>(&mut self, simd: S, values: &Row, sight: &Sight) -> Need {
+        let all = |number| Lanes::all(simd, number);
+        let near = all(NEAR * sight.tolerance);
+        let [mut is_any_open, mut is_any_far] = [Mask::none(simd); 2];
+        for part in 0..parts::<S>() {
+            let at = |row: &Row| Lanes::of(simd, row, part);
+            let (t, since_slopes, is_open) = (at(&self.t), at(&self.step), self.are_open(simd, part));
+            let nearer = t - at(values) * at(&self.inverse);
+            let next = nearer.between(at(&self.reach[0]), at(&self.reach[1]));
+            let step = next - t;
+            let moves = step.is_less(all(0.0)) | all(0.0).is_less(step);
             // About as far as `next` is from the root, as slopes change.
             let rest = (step * since_slopes * all(sight.bend)).abs();
-            let is_far = all(NEAR * sight.tolerance).is_less(rest * all(sight.unevenness));
-            let moves = step.is_less(all(0.0)) | all(0.0).is_less(step);
-
-            let otherwise = is_narrow.select(is_inside.select(hit, lost), moves.select(open, lost));
-            let state = is_free.select(free, otherwise);
-            let was_open = before.is_same(open);
-            let is_found = was_open & state.is_same(hit);
-            let follows = is_found.select(nearer.between(root[0], root[1]), next);
-            was_open.put(follows, &mut self.t, part);
-            was_open.select(follows - t, all(0.0)).abs().put(&mut self.moved, part);
-            for (end, side) in self.wanted.iter_mut().enumerate() {
-                is_found.put(root[end], side, part);
-            }
+            let is_far = near.is_less(rest * all(sight.unevenness));
+            is_any_open = is_any_open | (is_open & moves);
+            is_any_far = is_any_far | (is_open & moves & is_far);
+            (is_open & !moves).put(all(state::LOST), &mut self.state, part);
+            next.put(&mut self.t, part);
             (since_slopes + step).put(&mut self.step, part);
-            was_open.put(state, &mut self.state, part);
-            let is_open = was_open & state.is_same(open);
-            needed = is_open.select(is_far.select(another, needed.at_least(last)), needed);
         }
-        Need::of(needed.greatest())
+        match (is_any_far.is_any(), is_any_open.is_any()) {
+            (true, _) => Need::Slopes,
+            (_, true) => Need::Last,
+            _ => Need::Nothing,
+        }
     }
 
     /// Puts the normals of rays in their places that meet the surface within `distance` of where these gradients were taken: their directions,
@@ -277,20 +294,24 @@ impl Bundle {
         put_units(simd, gradients, &mut units);
         let [x, y, z, are_plain] = &units;
         let (all, mut is_there) = (|number| Lanes::all(simd, number), Row::default());
-        let mut most_lacking = all(0.0);
+        let mut is_any_lacking = Mask::none(simd);
         for part in 0..parts::<S>() {
             let at = |row: &Row| Lanes::of(simd, row, part);
-            let is_near = at(&self.moved).is_at_most(all(distance));
             let is_hit = at(&self.state).is_same(all(state::HIT));
-            let there = (is_near & is_hit).select(at(are_plain), all(0.0));
-            there.put(&mut is_there, part);
-            most_lacking = is_hit.select(most_lacking.at_least(all(1.0) - there), most_lacking);
+            let is_near = at(&self.moved).is_at_most(all(distance)) & all(0.0).is_less(at(are_plain));
+            is_any_lacking = is_any_lacking | (is_hit & !is_near);
+            (is_near & is_hit).select(all(1.0), all(0.0)).put(&mut is_there, part);
         }
-        self.lacks_normals = most_lacking.greatest() > 0.0;
+        self.lacks_normals = is_any_lacking.is_any();
         for lane in (0..ROW).filter(|lane| is_there[*lane] > 0.0) {
             normals[self.places[lane] as usize] = DVec3::new(x[lane], y[lane], z[lane]);
         }
     }
+}
+
+/// The stretch of the ray in a lane.
+fn along([starts, ends]: &[Row; 2], lane: usize) -> Span {
+    Span { start: starts[lane], end: ends[lane] }
 }
 
 /// Columns or rows as doubles.
@@ -307,6 +328,8 @@ pub(super) struct Pursuit<'a> {
     pub(super) tile: &'a Tile<'a>,
     pub(super) start: &'a Start<'a>,
     pub(super) bundles: &'a mut [Bundle],
+    /// Where roots are wanted, and where the certificate holds, if that is the same along all rays and the bundles do not know it.
+    pub(super) common: Option<[Span; 2]>,
     pub(super) sight: &'a Sight,
     pub(super) slopes: &'a dyn BatchKernel,
     pub(super) last: Last<'a>,
@@ -338,10 +361,13 @@ impl WithSimd for Pursuit<'_> {
     /// Pursues all rays until they are free, hit or lost.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Taken {
-        let Self { tile, start, bundles, sight, slopes, mut last, points, scratch } = self;
+        let Self { tile, start, bundles, common, sight, slopes, mut last, points, scratch } = self;
         let mut taken = Taken::default();
         let (mut open, mut count) = ([0; AT_ONCE], 0);
         for (number, bundle) in bundles.iter_mut().enumerate() {
+            if let Some(stretches) = common {
+                bundle.look_along(stretches);
+            }
             if bundle.begin(simd, tile, (start, sight)) {
                 open[count] = number;
                 count += 1;
@@ -349,7 +375,7 @@ impl WithSimd for Pursuit<'_> {
         }
         // Where the model is as good as what is wanted there is nothing to come nearer to.
         let mut need = if start.uncertainty() <= sight.tolerance { Need::Last } else { Need::Slopes };
-        let mut is_first = true;
+        let [mut is_first, mut is_first_look] = [true; 2];
         for _ in 0..STEPS {
             if count == 0 {
                 break;
@@ -378,7 +404,7 @@ impl WithSimd for Pursuit<'_> {
                     Need::Slopes => {
                         bundle.approach(simd, [&rows[place], &rows[count + place]], (sight, is_first))
                     }
-                    _ => bundle.conclude(simd, &rows[place], sight),
+                    _ => bundle.conclude(simd, &rows[place], (sight, is_first_look)),
                 };
                 if let (Need::Last, Last::Gradient(_, normals)) = (need, &mut last) {
                     let gradients = [1, 2, 3].map(|axis| &rows[axis * count + place]);
@@ -391,6 +417,7 @@ impl WithSimd for Pursuit<'_> {
                 }
             }
             is_first &= need != Need::Slopes;
+            is_first_look &= need == Need::Slopes;
             need = if 2 * far > kept { Need::Slopes } else { Need::Last };
             count = kept;
         }

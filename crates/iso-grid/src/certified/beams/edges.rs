@@ -9,7 +9,7 @@ use pulp::{Simd, WithSimd};
 use super::faces::{Face, Sought};
 use super::grazing::DOUBTFUL;
 use super::made::{Combination, Combinations, MOST, Made};
-use super::packet::{OpenRays, Packet, Signed, for_all};
+use super::packet::{OpenArea, Packet, Signed, for_all};
 use super::pixels::{End, Pixels};
 use super::signs::{Event, Root, Roots, Signs, count_together, hull};
 use super::subdivision::{KnownAlong, Memory, Part, Subdivision};
@@ -52,7 +52,7 @@ impl Meeting {
 
 /// The search of a part for rays on which F may be zero.
 struct Survey<'a> {
-    rays: OpenRays<'a>,
+    rays: OpenArea<'a>,
     body: Body<'a>,
     packets: &'a mut Vec<Packet>,
     meetings: &'a mut Vec<Meeting>,
@@ -257,7 +257,7 @@ impl Subdivision<'_> {
         let body = Body { faces, made, asked: self.asked(part) };
         let arch = self.workspace.arch;
         let Memory { beams, open, packets, .. } = &mut self.memory;
-        let rays = OpenRays { area: beams[part.beam as usize].area, open, width: self.tile.width() };
+        let rays = OpenArea { area: beams[part.beam as usize].area, open };
         arch.dispatch(Survey { rays, body, packets, meetings, alone })
     }
 
@@ -360,7 +360,7 @@ impl Subdivision<'_> {
         let mut are_monotone = [true; MOST];
         are_monotone.iter_mut().zip(faces).for_each(|(is, face)| *is = face.bow.is_monotone());
         let mut signs = Signs { made, signs: *signs, are_monotone, tolerance: self.tolerance(part) };
-        while !roots.is_empty() && self.memory.open[place] {
+        while !roots.is_empty() && self.memory.open.holds(place) {
             let (together, others) = roots.split_at(count_together(roots));
             roots = others;
             let bracket = hull(together);
@@ -384,7 +384,7 @@ impl Subdivision<'_> {
             }
         }
         let rest = Span { start: known_to, end: part.stretch.end };
-        if self.memory.open[place] && rest.start < rest.end {
+        if self.memory.open.holds(place) && rest.start < rest.end {
             self.search_one(*position, rest, None);
         }
     }

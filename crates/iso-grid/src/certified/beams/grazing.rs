@@ -8,7 +8,7 @@ use pulp::{Simd, WithSimd};
 
 use super::bend::Bend;
 use super::faces::{Face, Outline};
-use super::packet::{OpenRays, Packet, Signed, for_all};
+use super::packet::{OpenArea, Packet, Signed, for_all};
 use super::pixels::{End, Pixels};
 use super::subdivision::{KnownAlong, Memory, Part, Subdivision};
 use crate::lanes::{Lanes, ROW, Row, parts};
@@ -172,7 +172,7 @@ impl Subdivision<'_> {
     fn start_bent(&mut self, part: &Part, face: &Face, pixels: &mut Vec<Pixels>) -> bool {
         let arch = self.workspace.arch;
         let Memory { beams, open, packets, .. } = &mut self.memory;
-        let rays = OpenRays { area: beams[part.beam as usize].area, open, width: self.tile.width() };
+        let rays = OpenArea { area: beams[part.beam as usize].area, open };
         let bent = Bent { face, stretch: part.stretch };
         arch.dispatch(Start { rays, tile: &self.tile, bent, packets, pixels })
     }
@@ -180,7 +180,7 @@ impl Subdivision<'_> {
 
 /// The search of a part for rays that may have a root.
 struct Start<'a> {
-    rays: OpenRays<'a>,
+    rays: OpenArea<'a>,
     tile: &'a Tile<'a>,
     bent: Bent<'a>,
     packets: &'a mut Vec<Packet>,

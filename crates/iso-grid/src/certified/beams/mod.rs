@@ -29,6 +29,7 @@ mod made;
 mod met;
 mod monotone;
 mod narrowing;
+mod open_rays;
 mod packet;
 mod pixels;
 mod rounding;

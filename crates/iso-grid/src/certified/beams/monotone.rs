@@ -6,6 +6,7 @@ use super::beam::Beam;
 use super::bundle::{Bundle, Last, Pursuit, Sight};
 use super::cuts::Cut;
 use super::form::{Form, ROUNDING};
+use super::open_rays::together;
 use super::rounding::Rounding;
 use super::sheaf::{Sheaf, Start};
 use super::subdivision::{Part, SMALLEST, Subdivision};
@@ -22,7 +23,7 @@ const SMALL: usize = 8;
 const LARGEST_COUNTED: usize = 16;
 
 /// A larger beam is cut when more rays are likely to be followed in vain.
-const DOUBTFUL: usize = 16;
+const DOUBTFUL: u32 = 16;
 
 /// Small beams are looked at anew where roots may lie on less than this share of what was looked at.
 const SHORT: f64 = 0.5;
@@ -90,20 +91,21 @@ impl Subdivision<'_> {
     /// Whether few rays of a part may have a root, but are likely to have none. Of large parts only the corners are asked.
     fn most_hit(&self, part: &Part, start: &Start<'_>) -> bool {
         let area = self.beam(part.beam).area;
-        if area.side() > LARGEST_COUNTED {
-            return area.corners().into_iter().all(|corner| start.is_sure(corner));
+        if start.is_sure_of(area) || area.side() > LARGEST_COUNTED {
+            return start.is_sure_of(area);
         }
         let doubtful = |row: usize| {
             let (likely, sure) =
                 (start.likely((area.column, row), area.width), start.sure((area.column, row), area.width));
-            let open = &self.memory.open[row * self.tile.width()..][area.columns()];
-            let count = |range: Range<usize>| open[range].iter().filter(|is_open| **is_open).count();
+            let count = |Range { start, end }: Range<usize>| {
+                self.memory.open.in_row(row, area.column + start..area.column + end).count_ones()
+            };
             match sure.is_empty() {
                 true => count(likely),
                 false => count(likely.start..sure.start) + count(sure.end..likely.end),
             }
         };
-        area.rows().map(doubtful).sum::<usize>() <= DOUBTFUL
+        area.rows().map(doubtful).sum::<u32>() <= DOUBTFUL
     }
 
     /// Ends or goes on with each ray of a part by its root there.
@@ -113,17 +115,17 @@ impl Subdivision<'_> {
             return if is_smallest { self.search_each(part) } else { self.divide_beam(part) };
         };
         let area = self.beam(part.beam).area;
+        let are_likely = start.is_sure_of(area);
         let mut sheaf = std::mem::take(&mut self.memory.sheaf);
         for row in area.rows() {
-            let Range { start: mut column, end } = area.columns();
-            while column < end {
-                let count = Sheaf::MOST.min(end - column);
-                if sheaf.room() < count {
+            for Range { start: first, end } in together(area.columns()) {
+                let likely =
+                    if are_likely { 0..end - first } else { start.likely((first, row), end - first) };
+                let (first, end) = (first + likely.start, first + likely.end);
+                if sheaf.room() < likely.len() {
                     self.pursue_sheaf(&mut sheaf, part, (start, &sight));
                 }
-                let open = &self.memory.open[row * self.tile.width() + column..][..count];
-                sheaf.add((column, row), open, start);
-                column += count;
+                sheaf.add((first, row), self.memory.open.in_row(row, first..end));
             }
         }
         self.pursue_sheaf(&mut sheaf, part, (start, &sight));
@@ -133,11 +135,12 @@ impl Subdivision<'_> {
     /// Ends or goes on with each ray of a sheaf. Those that may have a root so near to a face of the region that no point inside is known
     /// are searched each for its own.
     fn pursue_sheaf(&mut self, sheaf: &mut Sheaf, part: &Part, (start, sight): (&Start<'_>, &Sight)) {
-        let bundles = sheaf.take([part.stretch, part.form.reach]);
+        let bundles = sheaf.take();
         if !part.is_inside {
-            bundles
-                .iter_mut()
-                .for_each(|bundle| bundle.clip(|column, row| self.clipped(part, (column, row))));
+            for bundle in &mut *bundles {
+                bundle.look_along(part.stretches());
+                bundle.clip(|column, row| self.clipped(part, (column, row)));
+            }
         }
         self.pursue_bundles(bundles, part, (start, sight));
         for bundle in &*bundles {
@@ -147,7 +150,7 @@ impl Subdivision<'_> {
                 asked.for_each(|asked| self.memory.met.push(part.kernels, function, asked));
             }
             if let Some(first) = bundle.first_of_hits() {
-                self.end_neighbours(first, &bundle.t, &bundle.wanted);
+                self.end_neighbours(first, &bundle.root, &bundle.bracket);
                 continue;
             }
             bundle.hits().for_each(|(place, hit)| self.end(place, Outcome::Hit(hit)));
@@ -160,6 +163,7 @@ impl Subdivision<'_> {
     /// Follows the rays of no more than [`AT_ONCE`](super::bundle::AT_ONCE) bundles.
     fn pursue_bundles(&mut self, bundles: &mut [Bundle], part: &Part, (start, sight): (&Start<'_>, &Sight)) {
         let kernels = part.kernels;
+        let common = part.is_inside.then(|| part.stretches());
         let Workspace { arch, point_rows, scratch, counters, .. } = &mut *self.workspace;
         let of_part = &self.kernels[kernels as usize];
         let kernel_of_last = if self.normals.is_some() { Kernel::Gradients } else { Kernel::Values };
@@ -170,7 +174,8 @@ impl Subdivision<'_> {
         };
         let slopes = of_part.over_points(Kernel::Slopes);
         let (tile, points) = (&self.tile, point_rows);
-        let taken = arch.dispatch(Pursuit { tile, start, bundles, sight, slopes, last, points, scratch });
+        let taken =
+            arch.dispatch(Pursuit { tile, start, bundles, common, sight, slopes, last, points, scratch });
         counters.trace_evaluations += (taken.slopes + taken.last) as u64;
         if self.normals.is_some() {
             counters.gradient_evaluations += taken.last as u64;

@@ -2,6 +2,7 @@
 
 use pulp::Simd;
 
+use super::open_rays::{OpenRays, columns_of, together};
 use crate::area::Area;
 use crate::lanes::{Lanes, ROW, Row};
 use crate::raster::RayRow;
@@ -90,15 +91,12 @@ pub(super) fn for_all(Span { start, end }: Span) -> [Row; 2] {
 }
 
 /// The rays of an area of a tile that are still followed.
-pub(super) struct OpenRays<'a> {
+pub(super) struct OpenArea<'a> {
     pub(super) area: Area,
-    /// Of each ray of the tile, whether it is.
-    pub(super) open: &'a [bool],
-    /// The tile's columns.
-    pub(super) width: usize,
+    pub(super) open: &'a OpenRays,
 }
 
-impl OpenRays<'_> {
+impl OpenArea<'_> {
     /// Puts them into packets, but for those of blocks on which something is of one sign.
     #[inline(always)]
     pub(super) fn pack<S: Simd>(&self, simd: S, of: &impl Signed, packets: &mut Vec<Packet>) {
@@ -132,12 +130,10 @@ impl OpenRays<'_> {
 
     fn pack_block(&self, block: Area, packets: &mut Vec<Packet>) {
         for row in block.rows() {
-            for column in block.columns() {
-                let place = row * self.width + column;
-                if !self.open[place] {
-                    continue;
+            for columns in together(block.columns()) {
+                for column in columns_of(columns.start, self.open.in_row(row, columns)) {
+                    with_room(packets).push(row * self.open.width() + column, (column, row));
                 }
-                with_room(packets).push(place, (column, row));
             }
         }
     }

@@ -8,6 +8,7 @@ use super::bundle::{AT_ONCE, Bundle};
 use super::form::Model;
 use super::pixels::state;
 use crate::Span;
+use crate::area::Area;
 use crate::lanes::{Lanes, ROW};
 
 /// How far apart roots of neighbours must be, relative to where they are, so that roundings are much less.
@@ -63,6 +64,11 @@ impl<'a> Start<'a> {
         self.within(self.model.around(self.stretch), first, count)
     }
 
+    /// Whether all rays of an area are likely to have a root.
+    pub(super) fn is_sure_of(&self, area: Area) -> bool {
+        area.corners().into_iter().all(|corner| self.is_sure(corner))
+    }
+
     /// Which of those the model has a root of in the stretch, nearly. They are all likely.
     pub(super) fn sure(&self, first: (usize, usize), count: usize) -> Range<usize> {
         self.within([self.stretch.start, self.stretch.end], first, count)
@@ -86,11 +92,23 @@ impl<'a> Start<'a> {
             let are_far = first + change < least || most < first - change;
             return 0..if are_far { 0 } else { count };
         };
-        let ends = [columns * (least - first), columns * (most - first)];
-        // The next whole number behind each end: casts cut off what is left of a column, and saturate.
-        let next = |end: f64| ((end + 1.0) as i32).clamp(0, count as i32) as usize;
-        next(ends[0].min(ends[1]) - ROUNDED)..next(ends[0].max(ends[1]) + ROUNDED)
+        let [one, other] = [columns * (least - first), columns * (most - first)];
+        let (from, to) = if one < other { (one, other) } else { (other, one) };
+        whole(from + (1.0 - ROUNDED), count)..whole(to + (1.0 + ROUNDED), count)
     }
+}
+
+/// What is left of a number without its fraction, from 0 to `most`; of a whole number it may be one less.
+///
+/// A cast would take several times as long, for it saturates and looks for NaN.
+#[inline(always)]
+fn whole(number: f64, most: usize) -> usize {
+    const SHIFT: f64 = (1_u64 << 52) as f64;
+    let most = most as f64 + 0.5;
+    let number = if number < most { number } else { most };
+    let number = if 0.5 < number { number } else { 0.5 };
+    // Numbers of this size have no room for a fraction, and what is less stands in the lowest bits.
+    (number - 0.5 + SHIFT).to_bits() as u32 as usize
 }
 
 /// Bundles that are filled one after the other, so that few lanes stay empty, and pursued together.
@@ -113,26 +131,32 @@ impl Sheaf {
         Self::MOST - self.rays
     }
 
-    /// Adds those of some neighbours in a row of a tile, the first in this column, that are open and may have a root by the model. There is
-    /// room for all.
+    /// Adds those of some neighbours in a row of a tile, the first in this column, whose bits are set, from the least significant on. There
+    /// is room for all.
     #[inline]
-    pub(super) fn add(&mut self, (column, row): (usize, usize), open: &[bool], start: &Start<'_>) {
-        // One more is written to than is filled.
-        self.columns.resize(Self::MOST + 1, 0);
-        self.rows.resize(Self::MOST, 0);
-        let range = start.likely((column, row), open.len());
-        let mut rays = self.rays;
-        for (number, is_open) in range.clone().zip(&open[range]) {
-            // Written over by the next unless it is counted, for which of them are cannot be foreseen.
-            self.columns[rays] = (column + number) as u32;
-            rays += usize::from(*is_open);
+    pub(super) fn add(&mut self, (column, row): (usize, usize), mut bits: u64) {
+        // More are written to than are filled.
+        self.columns.resize(Self::MOST + ROW, 0);
+        self.rows.resize(Self::MOST + ROW, 0);
+        let (mut column, row) = (column as u32, row as u32);
+        while bits > 0 {
+            let skipped = bits.trailing_zeros();
+            let count = (bits >> skipped).trailing_ones();
+            column += skipped;
+            for first in (0..count).step_by(ROW) {
+                let place = self.rays + first as usize;
+                let numbers: [u32; ROW] = std::array::from_fn(|number| column + first + number as u32);
+                self.columns[place..][..ROW].copy_from_slice(&numbers);
+                self.rows[place..][..ROW].fill(row);
+            }
+            self.rays += count as usize;
+            column += count;
+            bits = bits.checked_shr(skipped + count).unwrap_or(0);
         }
-        self.rows[self.rays..rays].fill(row as u32);
-        self.rays = rays;
     }
 
-    /// Takes out its bundles, for roots that are wanted where the part's certificate holds.
-    pub(super) fn take(&mut self, [wanted, reach]: [Span; 2]) -> &mut [Bundle] {
+    /// Takes out its bundles.
+    pub(super) fn take(&mut self) -> &mut [Bundle] {
         let count = self.rays.div_ceil(ROW);
         // Lanes that no ray fills repeat the last one.
         if let Some(last) = self.rays.checked_sub(1) {
@@ -147,8 +171,6 @@ impl Sheaf {
         for ((bundle, columns), rows) in bundles.iter_mut().zip(columns).zip(rows) {
             (bundle.columns, bundle.rows) = (*columns, *rows);
             (bundle.state, bundle.lacks_normals) = ([state::OPEN; ROW], false);
-            bundle.wanted = [[wanted.start; ROW], [wanted.end; ROW]];
-            bundle.reach = [[reach.start; ROW], [reach.end; ROW]];
         }
         if let [.., last] = &mut *bundles {
             last.state[(self.rays - 1) % ROW + 1..].fill(state::FREE);
@@ -193,7 +215,12 @@ mod tests {
             let [mut likely, mut nearly] = [vec![], vec![]];
             for row in 0..3 {
                 let first = 7 + row;
-                sheaf.add((first, row), &open, &start);
+                let numbers = start.likely((first, row), width);
+                let bits =
+                    numbers.filter(|number| open[*number]).fold(0_u128, |bits, number| bits | 1 << number);
+                // All that are told by one number, and then the others.
+                sheaf.add((first, row), bits as u64);
+                sheaf.add((first + 64, row), (bits >> 64) as u64);
                 for column in (first..first + width).filter(|column| open[column - first]) {
                     let t = model.at(column as f64 - 20.5, row as f64 - 3.5);
                     let [least, most] = model.around(stretch);
@@ -207,8 +234,8 @@ mod tests {
             }
             let taken = Sheaf::MOST - sheaf.room();
             let mut found = Vec::new();
-            for bundle in sheaf.take([stretch; 2]) {
-                assert!(bundle.state[0] == state::OPEN && bundle.wanted == bundle.reach);
+            for bundle in sheaf.take() {
+                assert_eq!(bundle.state[0], state::OPEN);
                 let rays: Vec<_> = bundle.columns.into_iter().zip(bundle.rows).collect();
                 let (open, free): (Vec<_>, Vec<_>) =
                     (0..ROW).partition(|lane| bundle.state[*lane] == state::OPEN);

@@ -13,6 +13,7 @@ use super::form::Form;
 use super::grazing::Attempts;
 use super::made::MOST;
 use super::met::Met;
+use super::open_rays::OpenRays;
 use super::packet::Packet;
 use super::pixels::Pixels;
 use super::rounding::{AROUND, Rounding};
@@ -52,6 +53,11 @@ pub(super) struct Part {
 }
 
 impl Part {
+    /// Where its roots are wanted, and where all holds that is known of it.
+    pub(super) fn stretches(&self) -> [Span; 2] {
+        [self.stretch, self.form.reach]
+    }
+
     /// What is known of F along its rays, unless they may leave the region.
     pub(super) fn known(&self) -> Option<KnownAlong> {
         self.is_inside.then_some(KnownAlong { kernels: self.kernels, span: self.form.reach })
@@ -84,8 +90,7 @@ pub(super) enum Known {
 /// Working memory for the subdivision of a tile.
 #[derive(Debug, Default)]
 pub(crate) struct Memory {
-    /// Whether each ray's first root is still looked for.
-    pub(super) open: Vec<bool>,
+    pub(super) open: OpenRays,
     /// What lies ahead. For each ray its stretches are in order, the nearest on top; everything before them is free of
     /// roots, and so is all between.
     pub(super) ahead: Vec<Part>,
@@ -167,8 +172,7 @@ impl<'a> Subdivision<'a> {
         memory.numbers.clear();
         memory.room = AROUND;
         memory.attempts = Attempts::default();
-        memory.open.clear();
-        memory.open.resize(tile.len(), true);
+        memory.open.open_all(tile.width(), tile.height());
         let (mut kernels, mut faces) = (Vec::with_capacity(NUMBERED), Vec::with_capacity(NUMBERED));
         kernels.push(Arc::clone(&certified.kernels));
         faces.push(Known::Nothing);
@@ -204,7 +208,7 @@ impl<'a> Subdivision<'a> {
             if self.certified.stop.is_requested() {
                 break;
             }
-            if !self.is_open(self.beam(part.beam).area) {
+            if !self.memory.open.is_any_in(self.beam(part.beam).area) {
                 continue;
             }
             let examined = part.stretch;
@@ -218,7 +222,7 @@ impl<'a> Subdivision<'a> {
             }
         }
         self.put_normals();
-        let are_missed = self.memory.open.iter().fold(true, |all, is_open| all & is_open);
+        let are_missed = self.memory.open.are_all();
         self.workspace.tile = self.memory;
         match are_missed {
             true => Traced::Nothing,
@@ -284,15 +288,6 @@ impl<'a> Subdivision<'a> {
         Some(std::array::from_fn(|place| std::array::from_fn(|output| boxes.decorated(output, place))))
     }
 
-    /// Whether some ray of `area` is still followed.
-    pub(super) fn is_open(&self, area: Area) -> bool {
-        area.rows().any(|row| {
-            let open = &self.memory.open[row * self.tile.width()..][area.columns()];
-            // Not searched, for most areas are open or closed as a whole, and this is done side by side.
-            open.iter().fold(false, |any, is_open| any | is_open)
-        })
-    }
-
     /// Gives kernels a number.
     pub(super) fn number_of(&mut self, kernels: Arc<Kernels>) -> u32 {
         self.kernels.push(kernels);
@@ -314,7 +309,7 @@ impl<'a> Subdivision<'a> {
         let beam = *self.beam(part.beam);
         for row in beam.area.rows() {
             for column in beam.area.columns() {
-                if self.memory.open[row * self.tile.width() + column] {
+                if self.memory.open.holds(row * self.tile.width() + column) {
                     let form = part.form.on(&beam, Area { column, row, width: 1, height: 1 });
                     if let Some(stretch) = form.narrow(part.stretch) {
                         self.search_one((column, row), stretch, part.known());
@@ -386,13 +381,13 @@ impl<'a> Subdivision<'a> {
     pub(super) fn end(&mut self, place: usize, outcome: Outcome) {
         self.lacks_normals |= matches!(outcome, Outcome::Touch(_));
         self.outcomes.set(place, outcome);
-        self.memory.open[place] = false;
+        self.memory.open.close(place);
     }
 
     /// Notes that neighbours in a row, from this place on, meet the surface: at these distances, in brackets with these starts and ends.
     #[inline]
     pub(super) fn end_neighbours(&mut self, first: usize, distances: &Row, brackets: &[Row; 2]) {
         self.outcomes.put_hits(first, distances, brackets);
-        self.memory.open[first..][..ROW].fill(false);
+        self.memory.open.close_neighbours(first..first + ROW);
     }
 }

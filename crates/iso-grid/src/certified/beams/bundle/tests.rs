@@ -40,8 +40,8 @@ fn ends_on_a_sphere(with_normals: bool, run: impl Fn(Pursuit<'_>) -> Taken) -> E
     };
     let start = Start::new(&model, (3.5, 3.5), Span { start: 4.0, end: 4.4 });
     let mut sheaf = Sheaf::default();
-    (0..8).for_each(|row| sheaf.add((0, row), &[true; 8], &start));
-    let bundles = sheaf.take([Span::default(); 2]);
+    (0..8).for_each(|row| sheaf.add((0, row), 0xff));
+    let bundles = sheaf.take();
     for bundle in &mut *bundles {
         bundle.clip(|column, row| {
             // The last row's roots lie before what is wanted, the fifth's before where F may be looked at, and the sixth's right
@@ -66,6 +66,7 @@ fn ends_on_a_sphere(with_normals: bool, run: impl Fn(Pursuit<'_>) -> Taken) -> E
         tile: &tile,
         start: &start,
         bundles,
+        common: None,
         sight: &sight,
         slopes: &*slopes,
         last,
@@ -85,13 +86,11 @@ fn normals_are_those_of_gradients_next_to_the_hit_alone() {
     let simd = Scalar::new();
     let (wanted, reach) = (Span { start: 0.5, end: 1.5 }, Span { start: 0.0, end: 2.0 });
     let mut sheaf = Sheaf::default();
-    let model = Model { t: 1.0, by_column: 0.0, by_row: 0.0, uncertainty: 0.1 };
-    let start = Start::new(&model, (0.0, 0.0), wanted);
-    sheaf.add((1, 0), &[true], &start);
-    let [bundle] = sheaf.take([wanted, reach]) else { panic!("one ray is one bundle") };
+    sheaf.add((1, 0), 1);
+    let [bundle] = sheaf.take() else { panic!("one ray is one bundle") };
+    bundle.look_along([wanted, reach]);
     bundle.places[0] = 1;
-    // F is t − 1, and was not taken near its root.
-    (bundle.t[0], bundle.inverse[0]) = (1.0 + 1e-6, 1.0);
+    bundle.inverse[0] = 1.0;
     let sight = Sight {
         inverse: 1.0,
         turn: 0.0,
@@ -103,9 +102,11 @@ fn normals_are_those_of_gradients_next_to_the_hit_alone() {
     };
     let (x, yz) = ([2.0; ROW], [0.0; ROW]);
     let mut normals = [DVec3::NAN; 3];
-    for expected in [DVec3::NAN, DVec3::X] {
-        let value = [bundle.t[0] - 1.0; ROW];
-        assert_eq!(bundle.conclude(simd, &value, &sight), Need::Nothing, "the root is proven");
+    // F is t − 1, and is not taken near its root at first.
+    for (t, expected) in [(1.0 + 1e-6, DVec3::NAN), (1.0 + 1e-13, DVec3::X)] {
+        (bundle.t[0], bundle.state[0]) = (t, state::OPEN);
+        let value = [t - 1.0; ROW];
+        assert_eq!(bundle.conclude(simd, &value, (&sight, true)), Need::Nothing, "the root is proven");
         bundle.put_normals(simd, ([&x, &yz, &yz], sight.tolerance), &mut normals);
         assert_eq!(normals[1].to_array().map(f64::to_bits), expected.to_array().map(f64::to_bits));
     }
@@ -153,16 +154,15 @@ fn rays_end_where_they_meet_the_sphere_on_any_processor() {
 #[test]
 fn the_first_step_bends_as_slopes_do_where_that_is_known() {
     let (wanted, reach) = (Span { start: 0.5, end: 1.5 }, Span { start: 0.0, end: 2.0 });
-    let model = Model { t: 1.1, by_column: 0.0, by_row: 0.0, uncertainty: 0.2 };
-    let start = Start::new(&model, (0.0, 0.0), wanted);
     // F is (t − 1) + (t − 1)²/2, taken at 1.1.
     let [value, slope] = [0.105, 1.1].map(|number| [number; ROW]);
     let newton = 1.1 - 0.105 / 1.1;
     let unknown = [0.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(|turn| (turn, newton, 1e-15));
     for (turn, expected, most) in [(1.0, 1.0, 1e-6)].into_iter().chain(unknown) {
         let mut sheaf = Sheaf::default();
-        sheaf.add((0, 0), &[true], &start);
-        let [bundle] = sheaf.take([wanted, reach]) else { panic!("one ray is one bundle") };
+        sheaf.add((0, 0), 1);
+        let [bundle] = sheaf.take() else { panic!("one ray is one bundle") };
+        bundle.look_along([wanted, reach]);
         (bundle.t, bundle.step) = ([1.1; ROW], [f64::INFINITY; ROW]);
         let sight = Sight {
             inverse: 1.0,
@@ -187,15 +187,15 @@ fn the_first_step_bends_as_slopes_do_where_that_is_known() {
 #[test]
 fn slopes_that_sway_ask_for_another_step() {
     let (wanted, reach) = (Span { start: 0.5, end: 1.5 }, Span { start: 0.0, end: 2.0 });
-    let model = Model { t: 1.0, by_column: 0.0, by_row: 0.0, uncertainty: 0.2 };
     // F is (t − 1) + (t − 1)²/2, taken at 1.001.
     let [value, slope] = [0.0010005, 1.001].map(|number| [number; ROW]);
     for (sway, expected) in
         [(0.0, Need::Last), (1e-6, Need::Last), (0.25, Need::Slopes), (f64::NAN, Need::Slopes)]
     {
         let mut sheaf = Sheaf::default();
-        sheaf.add((0, 0), &[true], &Start::new(&model, (0.0, 0.0), wanted));
-        let [bundle] = sheaf.take([wanted, reach]) else { panic!("one ray is one bundle") };
+        sheaf.add((0, 0), 1);
+        let [bundle] = sheaf.take() else { panic!("one ray is one bundle") };
+        bundle.look_along([wanted, reach]);
         (bundle.t, bundle.step) = ([1.001; ROW], [f64::INFINITY; ROW]);
         let sight =
             Sight { inverse: 1.0, turn: 1.0, unevenness: 0.5, bend: 0.25, sway, blur: 0.0, tolerance: 1e-12 };
@@ -220,14 +220,15 @@ fn the_last_look_may_be_the_first() {
         .map(|program| Interpreter.batch(&program.simplified()).unwrap());
     for before in [0.0, 7.0, f64::NAN] {
         let mut sheaf = Sheaf::default();
-        sheaf.add((0, 0), &[true], &start);
-        let bundles = sheaf.take([wanted, reach]);
+        sheaf.add((0, 0), 1);
+        let bundles = sheaf.take();
         let bundle = &mut bundles[0];
         (bundle.value, bundle.inverse, bundle.step) = ([before; ROW], [before; ROW], [before; ROW]);
         let taken = Pursuit {
             tile: &tile,
             start: &start,
             bundles,
+            common: Some([wanted, reach]),
             sight: &sight,
             slopes: &*slopes,
             last: Last::Value(&*values),
@@ -247,13 +248,13 @@ fn the_last_look_may_be_the_first() {
 #[test]
 fn what_encloses_a_root_holds_all_that_there_may_be() {
     let concluded = |[t, value]: [f64; 2], [unevenness, blur]: [f64; 2], wanted: Span| {
-        let model = Model { t, by_column: 0.0, by_row: 0.0, uncertainty: 0.2 };
         let mut sheaf = Sheaf::default();
-        sheaf.add((0, 0), &[true], &Start::new(&model, (0.0, 0.0), wanted));
-        let [bundle] = sheaf.take([wanted, Span { start: 0.5, end: 1.5 }]) else { panic!("one bundle") };
+        sheaf.add((0, 0), 1);
+        let [bundle] = sheaf.take() else { panic!("one bundle") };
+        bundle.look_along([wanted, Span { start: 0.5, end: 1.5 }]);
         (bundle.t, bundle.inverse) = ([t; ROW], [1.0; ROW]);
         let sight = Sight { inverse: 1.0, turn: 0.0, unevenness, bend: 0.1, sway: 0.1, blur, tolerance: 0.1 };
-        bundle.conclude(Scalar::new(), &[value; ROW], &sight);
+        bundle.conclude(Scalar::new(), &[value; ROW], (&sight, true));
         (bundle.hits().next().map(|(_, hit)| hit.bracket), bundle.state[0])
     };
     for (taken, errors, [first, last]) in [
