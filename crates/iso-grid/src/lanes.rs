@@ -92,12 +92,6 @@ impl<S: Simd> Lanes<S> {
         Mask { simd: self.simd, mask: self.simd.equal_f64s(self.numbers, other.numbers) }
     }
 
-    /// The greatest of the numbers, none of which is NaN.
-    #[inline(always)]
-    pub(crate) fn greatest(self) -> f64 {
-        self.simd.reduce_max_f64s(self.numbers)
-    }
-
     /// The sum of the numbers, which are whole and small.
     #[inline(always)]
     pub(crate) fn sum(self) -> f64 {

@@ -36,6 +36,16 @@ pub enum Composition<F> {
 }
 
 impl<F> Composition<F> {
+    /// The functions.
+    pub fn functions(&self) -> impl Iterator<Item = &F> {
+        let (all, some): (&[F], [Option<&F>; 3]) = match self {
+            Self::Extreme(_, all) => (all, [None; 3]),
+            Self::Choice { by, below, above } => (&[], [Some(by), Some(below), Some(above)]),
+            Self::Within { function, margin } => (&[], [Some(function), Some(margin), None]),
+        };
+        all.iter().chain(some.into_iter().flatten())
+    }
+
     /// The same of what `make` makes of the functions.
     pub fn of_each<G>(&self, mut make: impl FnMut(&F) -> G) -> Composition<G> {
         match self {

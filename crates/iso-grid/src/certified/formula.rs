@@ -20,16 +20,12 @@ const OFTEN: u64 = 1 << 17;
 /// About how many times as long an operation takes at points, or of forms, in kernels that are made for few runs, where it is interpreted.
 pub(super) const INTERPRETED: u64 = 4;
 
-/// A function of more operations is not followed through kinks inside it: that takes each side of all of them. Measured: for a body of 600
-/// operations with smooth seams a fifth more time.
-const LONGEST_CHOICE: usize = 64;
-
 /// F, or what it comes to in some places: a function with the same signs there.
 pub(super) struct Formula {
     /// Compiled before, or not to be compiled as long as it is seldom asked for.
     surface: Arc<Surface>,
     /// The same as native code, if it was asked for often.
-    compiled: OnceLock<Arc<Surface>>,
+    compiled: OnceLock<Surface>,
     patience: AllPatience,
     /// Whether it is F as it is everywhere.
     is_whole: bool,
@@ -91,7 +87,8 @@ impl Formulas {
             return Arc::clone(formula);
         }
         let operations = program.operations() as u64;
-        let surface = outer.surface.reduced_to(program.clone());
+        let surface =
+            outer.face(program).cloned().unwrap_or_else(|| outer.surface.reduced_to(program.clone()));
         let formula = Arc::new(Formula::new(surface, patience, outer.least_with_forms));
         if self.have_room() {
             self.room.update(Ordering::Relaxed, Ordering::Relaxed, |room| room.saturating_sub(operations));
@@ -180,12 +177,18 @@ impl Formula {
         let operations = program.operations();
         let of_kernels = Kernel::ALL.map(|_| Patience::limited(operations));
         let (has_branches, is_cut) = (program.has_branches(), program.is_cut());
+        let has_forms = operations >= least_with_forms && Kernel::Forms.pays(program);
+        let compiled = OnceLock::new();
+        // By an earlier picture.
+        if let Some(surface) = surface.compiled_for_many_runs(Kernel::of_proofs(has_forms)) {
+            compiled.get_or_init(|| surface.clone());
+        }
         Self {
             least_with_forms,
-            has_forms: operations >= least_with_forms && Kernel::Forms.pays(program),
+            has_forms,
             has_hessian: Kernel::HessianEnclosures.pays(program),
             surface: Arc::new(surface),
-            compiled: OnceLock::new(),
+            compiled,
             patience: AllPatience { whole: patience, of_kernels },
             is_whole: false,
             has_branches,
@@ -198,6 +201,12 @@ impl Formula {
 
     pub(super) fn program(&self) -> &Program {
         self.surface.program()
+    }
+
+    /// The surface of one of the functions that it is made of everywhere, if it is F.
+    fn face(&self, program: &Program) -> Option<&Surface> {
+        let composition = self.surface.composition().filter(|_| self.is_whole)?;
+        composition.functions().find(|face| face.program() == program)
     }
 
     /// Whether there is anything that a box may decide.
@@ -234,13 +243,13 @@ impl Formula {
     /// How it is made of others everywhere, if it has kinks.
     pub(super) fn composition(&self, formulas: &Formulas) -> Option<&Composition<Arc<Self>>> {
         let find = || {
-            let one_of = |program: &Program| formulas.one_of(program, self);
-            Some(match self.program().composition(LONGEST_CHOICE)? {
-                Composition::Within { ref function, ref margin }
-                    if self.is_whole && !Kernel::are_left_to_places(function) =>
+            let one_of = |face: &Surface| formulas.one_of(face.program(), self);
+            Some(match self.surface.composition()? {
+                Composition::Within { function, margin }
+                    if self.is_whole && !Kernel::are_left_to_places(function.program()) =>
                 {
                     // It is asked for wherever anything is to be seen.
-                    let function = formulas.one_with(function, self, Patience::none());
+                    let function = formulas.one_with(function.program(), self, Patience::none());
                     Composition::Within { function, margin: one_of(margin) }
                 }
                 composition => composition.of_each(one_of),
@@ -273,7 +282,7 @@ impl Formula {
         if self.patience.whole.wear(operations) {
             let surface = self.surface.made_for_many_runs();
             if Kernel::of_proofs(self.has_forms).all(|kernel| surface.compile(kernel).is_ok()) {
-                self.compiled.get_or_init(|| Arc::new(surface));
+                self.compiled.get_or_init(|| surface.clone());
                 Kernel::ALL.into_iter().for_each(|kernel| self.compile_if_often(kernel));
             }
         }

@@ -288,7 +288,8 @@ mod tests {
                 let around = bend.around(all([0.0; 2]), all(beam.radii));
                 for (course, which) in [(course, "ray"), (around, "beam")] {
                     let is_in = |found: Interval, middle: Lanes<Scalar>, error: Lanes<Scalar>| {
-                        let [middle, error] = [middle, error].map(Lanes::greatest);
+                        // There is one of each.
+                        let [middle, error] = [middle, error].map(Lanes::sum);
                         found.lo <= middle + error && middle - error <= found.hi
                     };
                     assert!(is_in(value, course.value, course.value_error), "{which}: {value}, {course:?}");
