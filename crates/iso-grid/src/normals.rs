@@ -9,7 +9,7 @@ use pulp::{Simd, WithSimd};
 use crate::area::Area;
 use crate::lanes::{Lanes, ROW, Row, parts};
 use crate::mean_slopes::Around;
-use crate::point_rows::PointRows;
+use crate::point_rows::{PointRows, row_of};
 use crate::{Hit, Kernel, Outcome, OutcomeKind, Outcomes, Ray, Span, Surface, Tile, Tracer, Workspace};
 
 /// How many rows of points are asked about by one call of the kernel.
@@ -223,16 +223,17 @@ impl WithSimd for Search<'_> {
         let (mut units, mut is_each_there) = ([[0.0; ROW]; 4], true);
         for asked in asked.chunks(ROW * ROWS) {
             let count = asked.len().div_ceil(ROW);
-            for (asked, coordinates) in asked.chunks(ROW).zip(points.replace(count)) {
+            let mut coordinates = points.replace(count);
+            for (number, asked) in asked.chunks(ROW).enumerate() {
                 let (mut columns, mut rows, mut ts) = (Row::default(), Row::default(), [f64::NAN; ROW]);
                 for (lane, Asked { place, t }) in asked.iter().enumerate() {
                     columns[lane] = (place % tile.width()) as f64;
                     rows[lane] = (place / tile.width()) as f64;
                     ts[lane] = *t;
                 }
-                tile.row(simd, &columns, &rows).at(simd, &ts, coordinates);
+                tile.row(simd, &columns, &rows).at(simd, &ts, row_of(&mut coordinates, number));
             }
-            let outputs = points.evaluate(kernel, scratch, 4);
+            let (outputs, _) = points.evaluate(kernel, scratch, 4);
             for (number, asked) in asked.chunks(ROW).enumerate() {
                 let gradients = [1, 2, 3].map(|output| &outputs[output * count + number]);
                 put_units(simd, gradients, &mut units);

@@ -20,12 +20,25 @@ pub(crate) struct PointRows {
     values: Vec<Row>,
 }
 
+/// Rows of points, coordinate by coordinate, to be written to.
+pub(crate) type Coordinates<'a> = [&'a mut [Row]; 3];
+
+/// One of them.
+#[inline(always)]
+pub(crate) fn row_of<'a>([x, y, z]: &'a mut Coordinates<'_>, number: usize) -> [&'a mut Row; 3] {
+    [&mut x[number], &mut y[number], &mut z[number]]
+}
+
 impl PointRows {
-    /// So many rows of points in place of all others, coordinate by coordinate, to be written to.
-    pub(crate) fn replace(&mut self, count: usize) -> impl Iterator<Item = [&mut Row; 3]> {
+    /// So many rows of points in place of all others.
+    pub(crate) fn replace(&mut self, count: usize) -> Coordinates<'_> {
         self.count = count;
-        let [x, y, z] = self.coordinates.each_mut().map(|rows| room(rows, count).iter_mut());
-        x.zip(y).zip(z).map(|((x, y), z)| [x, y, z])
+        self.coordinates.each_mut().map(|rows| room(rows, count))
+    }
+
+    /// Leaves the first rows, so many of them.
+    pub(crate) fn truncate(&mut self, count: usize) {
+        self.count = self.count.min(count);
     }
 
     /// Makes these the directions of the rays, row by row. What stands behind them means nothing.
@@ -47,26 +60,31 @@ impl PointRows {
         self.common = Some(direction);
     }
 
-    /// All `outputs` of the kernel at all points: those of row `i` of output `k` stand in row `k·count + i`.
+    /// All `outputs` of the kernel at all points, those of row `i` of output `k` in row `k·count + i`, and the rows of points, so that others can be
+    /// written in their place.
     pub(crate) fn evaluate(
         &mut self,
         kernel: &dyn BatchKernel,
         scratch: &mut Scratch,
         outputs: usize,
-    ) -> &[Row] {
+    ) -> (&[Row], Coordinates<'_>) {
         let [x, y, z] = first(&self.coordinates, self.count);
         let values = room(&mut self.values, outputs * self.count);
         kernel.evaluate(scratch, &[x, y, z], values.as_flattened_mut());
-        values
+        (values, self.coordinates.each_mut().map(|rows| &mut rows[..self.count]))
     }
 
-    /// F and its slope along the directions at all points, laid out in the same way.
-    pub(crate) fn slopes(&mut self, kernel: &dyn BatchKernel, scratch: &mut Scratch) -> &[Row] {
+    /// F and its slope along the directions at all points, in the same way.
+    pub(crate) fn slopes(
+        &mut self,
+        kernel: &dyn BatchKernel,
+        scratch: &mut Scratch,
+    ) -> (&[Row], Coordinates<'_>) {
         let [x, y, z] = first(&self.coordinates, self.count);
         let [dx, dy, dz] = first(&self.directions, self.count);
         let values = room(&mut self.values, 2 * self.count);
         kernel.evaluate(scratch, &[x, y, z, dx, dy, dz], values.as_flattened_mut());
-        values
+        (values, self.coordinates.each_mut().map(|rows| &mut rows[..self.count]))
     }
 }
 
@@ -98,11 +116,15 @@ mod tests {
         for (turn, count) in [3, 1, 2, 5, 4].into_iter().enumerate() {
             let at = |place: usize| [1, 10, 100].map(|scale| (scale * (8 * turn + place)) as f64);
             let of = |[x, y, z]: [f64; 3]| x + 2.0 * y + 3.0 * z * z - 1.0;
-            for (place, rows) in points.replace(count).enumerate() {
-                rows.into_iter().zip(at(place)).for_each(|(row, number)| *row = [number; ROW]);
+            // More than are left of them.
+            let mut rows = points.replace(count + turn);
+            for place in 0..count {
+                let row = row_of(&mut rows, place);
+                row.into_iter().zip(at(place)).for_each(|(row, number)| *row = [number; ROW]);
             }
+            points.truncate(count);
             let expected: Vec<_> = (0..count).map(|place| [of(at(place)); ROW]).collect();
-            assert_eq!(points.evaluate(&*values, &mut scratch, 1), expected);
+            assert_eq!(points.evaluate(&*values, &mut scratch, 1).0, expected);
 
             let one = DVec3::new(1.0, -1.0, turn as f64 / 2.0);
             for is_common in [true, false, true] {
@@ -117,7 +139,7 @@ mod tests {
                     let [dx, dy, dz] = if is_common { one.to_array() } else { direction(place) };
                     dx + 2.0 * dy + 6.0 * at(place)[2] * dz
                 };
-                let [found, along] = points.slopes(&*slopes, &mut scratch).split_at(count).into();
+                let [found, along] = points.slopes(&*slopes, &mut scratch).0.split_at(count).into();
                 assert_eq!(found, expected);
                 assert_eq!(along, (0..count).map(|place| [slope(place); ROW]).collect::<Vec<_>>());
             }

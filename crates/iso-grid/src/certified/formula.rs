@@ -209,6 +209,11 @@ impl Formula {
         composition.functions().find(|face| face.program() == program)
     }
 
+    /// Whether it is F as it is everywhere.
+    pub(super) fn is_whole(&self) -> bool {
+        self.is_whole
+    }
+
     /// Whether there is anything that a box may decide.
     pub(super) fn has_branches(&self) -> bool {
         self.has_branches

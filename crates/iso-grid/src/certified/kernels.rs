@@ -14,6 +14,9 @@ use crate::{Kernel, Surface};
 /// How many boxes are enclosed by one call at most.
 pub(super) const BATCH: usize = 8;
 
+/// Of so few functions it is first asked whether any of them has a sign on a box.
+const FEW: usize = 4;
+
 /// An axis-parallel box.
 pub(super) type Bounds = [Interval; 3];
 
@@ -62,8 +65,25 @@ impl Kernels {
     /// asked for often.
     pub(super) fn shortened(&self, formulas: &Formulas, domain: Bounds) -> Option<Self> {
         let domain = [0, 1, 2].map(|axis| domain[axis].intersection(self.domain[axis]));
+        if self.leave_all_open(formulas, domain) {
+            return None;
+        }
         let program = self.program().shortened(domain)?;
         Some(Self::on(domain, formulas.one_of(&program, &self.formula)))
+    }
+
+    /// Whether F is the least or the greatest of a few smooth functions none of which has a sign on a box, so that nothing is decided there: these
+    /// have native code, and to look at all of F takes several times as long.
+    fn leave_all_open(&self, formulas: &Formulas, domain: Bounds) -> bool {
+        let composition = self.formula.is_whole().then(|| self.composition(formulas)).flatten();
+        let Some(Composition::Extreme(_, faces)) = composition else { return false };
+        let mut scratch = Scratch::default();
+        let mut has_no_sign = |face: &Arc<Self>| {
+            let [Decorated { interval: Interval { lo, hi }, .. }, ..] =
+                face.enclosures(&mut scratch, &[domain]);
+            lo < 0.0 && 0.0 < hi
+        };
+        faces.len() <= FEW && faces.iter().all(|face| !face.may_be_shortened() && has_no_sign(face))
     }
 
     /// Kernels of the functions that F is made of wherever these hold, if it has kinks there.

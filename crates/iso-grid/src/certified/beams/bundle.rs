@@ -9,7 +9,7 @@ use super::pixels::{STEPS, state};
 use super::sheaf::Start;
 use crate::lanes::{Lanes, Mask, ROW, Row, parts};
 use crate::normals::{Asked, put_units};
-use crate::point_rows::PointRows;
+use crate::point_rows::{PointRows, row_of};
 use crate::raster::RayRow;
 use crate::{Hit, Span, Tile};
 
@@ -364,11 +364,13 @@ impl WithSimd for Pursuit<'_> {
         let Self { tile, start, bundles, common, sight, slopes, mut last, points, scratch } = self;
         let mut taken = Taken::default();
         let (mut open, mut count) = ([0; AT_ONCE], 0);
+        let mut coordinates = points.replace(bundles.len());
         for (number, bundle) in bundles.iter_mut().enumerate() {
             if let Some(stretches) = common {
                 bundle.look_along(stretches);
             }
             if bundle.begin(simd, tile, (start, sight)) {
+                bundle.rays.at(simd, &bundle.t, row_of(&mut coordinates, count));
                 open[count] = number;
                 count += 1;
             }
@@ -376,15 +378,12 @@ impl WithSimd for Pursuit<'_> {
         // Where the model is as good as what is wanted there is nothing to come nearer to.
         let mut need = if start.uncertainty() <= sight.tolerance { Need::Last } else { Need::Slopes };
         let [mut is_first, mut is_first_look] = [true; 2];
+        points.truncate(count);
         for _ in 0..STEPS {
             if count == 0 {
                 break;
             }
-            for (coordinates, number) in points.replace(count).zip(&open) {
-                let Bundle { rays, t, .. } = &bundles[*number];
-                rays.at(simd, t, coordinates);
-            }
-            let rows = match (need, &last) {
+            let (rows, mut coordinates) = match (need, &last) {
                 (Need::Slopes, _) => {
                     match tile.direction() {
                         Some(direction) => points.aim(direction),
@@ -411,6 +410,7 @@ impl WithSimd for Pursuit<'_> {
                     bundle.put_normals(simd, (gradients, sight.tolerance), normals);
                 }
                 if next != Need::Nothing {
+                    bundle.rays.at(simd, &bundle.t, row_of(&mut coordinates, kept));
                     open[kept] = number;
                     kept += 1;
                     far += usize::from(next == Need::Slopes);
@@ -420,6 +420,7 @@ impl WithSimd for Pursuit<'_> {
             is_first_look &= need == Need::Slopes;
             need = if 2 * far > kept { Need::Slopes } else { Need::Last };
             count = kept;
+            points.truncate(count);
         }
         taken
     }

@@ -10,7 +10,7 @@ use super::form::ROUNDING;
 use super::packet::Packet;
 use super::subdivision::Subdivision;
 use crate::lanes::{Lanes, Mask, Row, parts};
-use crate::point_rows::PointRows;
+use crate::point_rows::{PointRows, row_of};
 use crate::raster::RayRow;
 use crate::{Hit, Kernel, Span, Workspace};
 
@@ -235,31 +235,33 @@ impl WithSimd for Approach<'_> {
     fn with_simd<S: Simd>(self, simd: S) -> usize {
         let Self { pixels, bow, kernel, points, scratch } = self;
         let (mut open, mut count, mut taken) = ([0; AT_ONCE], 0, 0);
+        let mut coordinates = points.replace(pixels.len());
         for (number, pixels) in pixels.iter().enumerate() {
             if pixels.is_any_open() {
+                pixels.rays.at(simd, &pixels.t, row_of(&mut coordinates, count));
                 open[count] = number;
                 count += 1;
             }
         }
+        points.truncate(count);
         for _ in 0..STEPS {
             if count == 0 {
                 break;
             }
-            for (coordinates, number) in points.replace(count).zip(&open) {
-                let Pixels { rays, t, .. } = &pixels[*number];
-                rays.at(simd, t, coordinates);
-            }
-            let values = points.evaluate(kernel, scratch, 1);
+            let (values, mut coordinates) = points.evaluate(kernel, scratch, 1);
             taken += values.as_flattened().len();
             let mut kept = 0;
             for (place, values) in values.iter().enumerate() {
                 let number = open[place];
-                if pixels[number].look(simd, values, bow) {
+                let pixels = &mut pixels[number];
+                if pixels.look(simd, values, bow) {
+                    pixels.rays.at(simd, &pixels.t, row_of(&mut coordinates, kept));
                     open[kept] = number;
                     kept += 1;
                 }
             }
             count = kept;
+            points.truncate(count);
         }
         taken
     }
