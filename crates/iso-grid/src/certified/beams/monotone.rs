@@ -94,18 +94,19 @@ impl Subdivision<'_> {
         if start.is_sure_of(area) || area.side() > LARGEST_COUNTED {
             return start.is_sure_of(area);
         }
-        let doubtful = |row: usize| {
+        let doubtful = |sum: u32, row: usize| {
             let (likely, sure) =
                 (start.likely((area.column, row), area.width), start.sure((area.column, row), area.width));
             let count = |Range { start, end }: Range<usize>| {
                 self.memory.open.in_row(row, area.column + start..area.column + end).count_ones()
             };
-            match sure.is_empty() {
+            let of_row = match sure.is_empty() {
                 true => count(likely),
                 false => count(likely.start..sure.start) + count(sure.end..likely.end),
-            }
+            };
+            Some(sum + of_row).filter(|sum| *sum <= DOUBTFUL)
         };
-        area.rows().map(doubtful).sum::<u32>() <= DOUBTFUL
+        area.rows().try_fold(0, doubtful).is_some()
     }
 
     /// Ends or goes on with each ray of a part by its root there.
