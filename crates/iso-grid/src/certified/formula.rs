@@ -312,3 +312,31 @@ impl Formula {
 pub(super) fn compiled<K>(kernel: Result<K, CompileError>) -> K {
     kernel.expect("native code was compiled before, and the interpreter takes any program")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::surface_of;
+
+    /// As for a second picture, whether faces or places are looked at first.
+    #[test]
+    fn kernels_of_what_a_surface_is_made_of_are_kept() {
+        let ball_and_half_space = || surface_of("max(x^2 + y^2 + z^2 - 1, x)");
+        let face_of = |surface: &Surface| {
+            let (whole, formulas) = (Formula::everywhere(surface).unwrap(), Formulas::default());
+            let Some(Composition::Extreme(_, faces)) = whole.composition(&formulas) else {
+                panic!("an intersection is made of two")
+            };
+            Arc::clone(&faces[0])
+        };
+        let is_native = |face: &Formula| face.compiled.get().is_some();
+        let surface = ball_and_half_space();
+        let first = face_of(&surface);
+        assert!(!is_native(&first));
+        first.wear(Kernel::Values, u64::MAX - 1);
+        assert!(is_native(&first) && is_native(&face_of(&surface)));
+        let whole = Formula::everywhere(&surface).unwrap();
+        assert!(is_native(&Formulas::default().one_of(first.program(), &whole)));
+        assert!(!is_native(&face_of(&ball_and_half_space())));
+    }
+}

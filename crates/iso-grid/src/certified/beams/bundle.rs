@@ -355,30 +355,39 @@ pub(super) struct Taken {
     pub(super) last: usize,
 }
 
-impl WithSimd for Pursuit<'_> {
-    type Output = Taken;
-
-    /// Pursues all rays until they are free, hit or lost.
+impl Pursuit<'_> {
+    /// Begins with all bundles, and puts the points at which F is to be taken first; says which bundles have open rays, and how many these are.
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Taken {
-        let Self { tile, start, bundles, common, sight, slopes, mut last, points, scratch } = self;
-        let mut taken = Taken::default();
+    fn begin<S: Simd>(&mut self, simd: S) -> ([usize; AT_ONCE], usize) {
         let (mut open, mut count) = ([0; AT_ONCE], 0);
-        let mut coordinates = points.replace(bundles.len());
-        for (number, bundle) in bundles.iter_mut().enumerate() {
-            if let Some(stretches) = common {
+        let mut coordinates = self.points.replace(self.bundles.len());
+        for (number, bundle) in self.bundles.iter_mut().enumerate() {
+            if let Some(stretches) = self.common {
                 bundle.look_along(stretches);
             }
-            if bundle.begin(simd, tile, (start, sight)) {
+            if bundle.begin(simd, self.tile, (self.start, self.sight)) {
                 bundle.rays.at(simd, &bundle.t, row_of(&mut coordinates, count));
                 open[count] = number;
                 count += 1;
             }
         }
+        self.points.truncate(count);
+        (open, count)
+    }
+}
+
+impl WithSimd for Pursuit<'_> {
+    type Output = Taken;
+
+    /// Pursues all rays until they are free, hit or lost.
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) -> Taken {
+        let (mut open, mut count) = self.begin(simd);
+        let Self { tile, start, bundles, sight, slopes, mut last, points, scratch, .. } = self;
+        let mut taken = Taken::default();
         // Where the model is as good as what is wanted there is nothing to come nearer to.
         let mut need = if start.uncertainty() <= sight.tolerance { Need::Last } else { Need::Slopes };
         let [mut is_first, mut is_first_look] = [true; 2];
-        points.truncate(count);
         for _ in 0..STEPS {
             if count == 0 {
                 break;
