@@ -1,8 +1,10 @@
 //! The surface F − C = 0 as kernels, compiled when first needed.
 
+use std::hash::BuildHasher;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use iso_expr::{BatchKernel, BoxKernel, CompileError, Composition, Engine, Program};
+use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use crate::certified::Cells;
 use crate::{Kernel, Region, Stop};
@@ -26,7 +28,8 @@ pub struct Surface {
     by_signs: Arc<OnceLock<Option<Surface>>>,
     /// The same with kernels that are made for many runs, where these are not.
     for_many_runs: Arc<OnceLock<Surface>>,
-    composition: Arc<OnceLock<Option<Composition<Surface>>>>,
+    /// The functions that F − C is made of, by the hashes of their programs.
+    faces: Arc<OnceLock<FxHashMap<u64, Surface>>>,
     stop: Stop,
 }
 
@@ -73,15 +76,15 @@ impl Surface {
             cells: Arc::default(),
             by_signs: Arc::default(),
             for_many_runs: Arc::default(),
-            composition: Arc::default(),
+            faces: Arc::default(),
             stop: Stop::default(),
         }
     }
 
     /// The same surface, on which all work ends when `stop` is requested.
     pub fn stopped_by(self, stop: Stop) -> Self {
-        let (for_many_runs, composition) = Default::default();
-        Self { stop, by_signs: Arc::default(), for_many_runs, composition, ..self }
+        let (by_signs, for_many_runs, faces) = Default::default();
+        Self { stop, by_signs, for_many_runs, faces, ..self }
     }
 
     /// What ends work on this surface.
@@ -137,11 +140,19 @@ impl Surface {
         self.for_many_runs.get().filter(|surface| kernels.all(|kernel| surface.is_compiled(kernel)))
     }
 
-    /// How F − C is made of other functions everywhere, if it has kinks. Their kernels are made for few runs.
-    pub(crate) fn composition(&self) -> Option<&Composition<Self>> {
-        let find =
-            || Some(self.value.composition(LONGEST_CHOICE)?.of_each(|face| self.reduced_to(face.clone())));
-        self.composition.get_or_init(find).as_ref()
+    /// How F − C is made of other functions everywhere, if it has kinks.
+    pub(crate) fn composition(&self) -> Option<Composition<Program>> {
+        self.value.composition(LONGEST_CHOICE)
+    }
+
+    /// The surface of one of these, by its program and the hash of that. Its kernels are made for few runs, and kept.
+    pub(crate) fn face(&self, hash: u64, program: &Program) -> Option<&Self> {
+        let find = || {
+            let composition = self.composition();
+            let faces = composition.iter().flat_map(Composition::functions);
+            faces.map(|face| (FxBuildHasher.hash_one(face), self.reduced_to(face.clone()))).collect()
+        };
+        self.faces.get_or_init(find).get(&hash).filter(|face| face.program() == program)
     }
 
     /// The surface of another function, on which work ends with that on this one.

@@ -88,7 +88,7 @@ impl Formulas {
         }
         let operations = program.operations() as u64;
         let surface =
-            outer.face(program).cloned().unwrap_or_else(|| outer.surface.reduced_to(program.clone()));
+            outer.face(hash, program).cloned().unwrap_or_else(|| outer.surface.reduced_to(program.clone()));
         let formula = Arc::new(Formula::new(surface, patience, outer.least_with_forms));
         if self.have_room() {
             self.room.update(Ordering::Relaxed, Ordering::Relaxed, |room| room.saturating_sub(operations));
@@ -203,10 +203,9 @@ impl Formula {
         self.surface.program()
     }
 
-    /// The surface of one of the functions that it is made of everywhere, if it is F.
-    fn face(&self, program: &Program) -> Option<&Surface> {
-        let composition = self.surface.composition().filter(|_| self.is_whole)?;
-        composition.functions().find(|face| face.program() == program)
+    /// The surface of one of the functions that it is made of everywhere, if it is F, by the hash of its program.
+    fn face(&self, hash: u64, program: &Program) -> Option<&Surface> {
+        if self.is_whole { self.surface.face(hash, program) } else { None }
     }
 
     /// Whether it is F as it is everywhere.
@@ -248,13 +247,13 @@ impl Formula {
     /// How it is made of others everywhere, if it has kinks.
     pub(super) fn composition(&self, formulas: &Formulas) -> Option<&Composition<Arc<Self>>> {
         let find = || {
-            let one_of = |face: &Surface| formulas.one_of(face.program(), self);
+            let one_of = |program: &Program| formulas.one_of(program, self);
             Some(match self.surface.composition()? {
-                Composition::Within { function, margin }
-                    if self.is_whole && !Kernel::are_left_to_places(function.program()) =>
+                Composition::Within { ref function, ref margin }
+                    if self.is_whole && !Kernel::are_left_to_places(function) =>
                 {
                     // It is asked for wherever anything is to be seen.
-                    let function = formulas.one_with(function.program(), self, Patience::none());
+                    let function = formulas.one_with(function, self, Patience::none());
                     Composition::Within { function, margin: one_of(margin) }
                 }
                 composition => composition.of_each(one_of),
