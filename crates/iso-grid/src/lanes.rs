@@ -192,3 +192,39 @@ operators! {
     Mask: BitAnd::bitand by mask, and_m64s;
     Mask: BitOr::bitor by mask, or_m64s;
 }
+
+#[cfg(test)]
+mod tests {
+    use pulp::{Arch, Scalar, WithSimd};
+
+    use super::*;
+
+    /// The numbers of a row, or others where those are greater, and where they are less.
+    struct Ends([Row; 2]);
+
+    impl WithSimd for Ends {
+        type Output = [[u64; ROW]; 2];
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+            let mut found = [Row::default(); 2];
+            for part in 0..parts::<S>() {
+                let [numbers, others] = Lanes::of_both(simd, &self.0, part);
+                numbers.at_least(others).put(&mut found[0], part);
+                numbers.at_most(others).put(&mut found[1], part);
+            }
+            found.map(|row| row.map(f64::to_bits))
+        }
+    }
+
+    #[test]
+    fn the_greater_and_the_lesser_are_the_same_bits_on_any_processor() {
+        let numbers = [1.0, 2.0, f64::NAN, -0.0, 0.0, f64::NEG_INFINITY, -1.0, f64::NAN];
+        let others = [2.0, 1.0, 1.0, 0.0, -0.0, -1.0, f64::INFINITY, -1.0];
+        let one_by_one = Ends([numbers, others]).with_simd(Scalar::new());
+        assert_eq!(Arch::new().dispatch(Ends([numbers, others])), one_by_one);
+        let [greater, lesser] = one_by_one.map(|row| row.map(f64::from_bits));
+        assert_eq!([greater[0], greater[1], lesser[0], lesser[1]], [2.0, 2.0, 1.0, 1.0]);
+        assert!([greater, lesser].iter().all(|row| row[2].is_nan() && row[7].is_nan()));
+    }
+}

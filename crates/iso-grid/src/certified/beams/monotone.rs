@@ -91,8 +91,9 @@ impl Subdivision<'_> {
     /// Whether few rays of a part may have a root, but are likely to have none. Of large parts only the corners are asked.
     fn most_hit(&self, part: &Part, start: &Start<'_>) -> bool {
         let area = self.beam(part.beam).area;
-        if start.is_sure_of(area) || area.side() > LARGEST_COUNTED {
-            return start.is_sure_of(area);
+        let are_sure = start.is_sure_of(area);
+        if are_sure || area.side() > LARGEST_COUNTED {
+            return are_sure;
         }
         let doubtful = |sum: u32, row: usize| {
             let (likely, sure) =
