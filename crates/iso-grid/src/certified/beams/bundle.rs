@@ -245,14 +245,14 @@ impl Bundle {
                 false => was_open.put(numbers, row, part),
             };
             put(&mut self.root, nearest);
-            put(&mut self.moved, (nearest - t).abs());
             self.bracket.iter_mut().zip(root).for_each(|(row, end)| put(row, end));
+            // Of rays that were decided before, too: they go on with the others of their bundle.
+            (at(&self.root) - t).abs().put(&mut self.moved, part);
         }
         if is_any_open.is_any() { self.go_on(simd, values, sight) } else { Need::Nothing }
     }
 
     /// A step towards the roots of rays that are still open, by the values of F at t and its last slopes. Says what is needed next.
-    #[cold]
     #[inline(always)]
     fn go_on<S: Simd>(&mut self, simd: S, values: &Row, sight: &Sight) -> Need {
         let all = |number| Lanes::all(simd, number);

@@ -111,6 +111,11 @@ fn normals_are_those_of_gradients_next_to_the_hit_alone() {
         assert_eq!(normals[1].to_array().map(f64::to_bits), expected.to_array().map(f64::to_bits));
     }
     assert!(normals[0].is_nan() && normals[2].is_nan());
+    // For other rays F is taken again, where this one was decided before, and not near its root.
+    bundle.t[0] = 1.0 + 1e-6;
+    bundle.conclude(simd, &[1e-6; ROW], (&sight, false));
+    bundle.put_normals(simd, ([&yz, &x, &yz], sight.tolerance), &mut normals);
+    assert_eq!(normals[1], DVec3::X);
 }
 
 #[test]
