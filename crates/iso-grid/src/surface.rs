@@ -1,10 +1,9 @@
 //! The surface F − C = 0 as kernels, compiled when first needed.
 
-use std::hash::BuildHasher;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use iso_expr::{BatchKernel, BoxKernel, CompileError, Composition, Engine, Program};
-use rustc_hash::{FxBuildHasher, FxHashMap};
+use rustc_hash::FxHashMap;
 
 use crate::certified::Cells;
 use crate::{Kernel, Region, Stop};
@@ -28,8 +27,8 @@ pub struct Surface {
     by_signs: Arc<OnceLock<Option<Surface>>>,
     /// The same with kernels that are made for many runs, where these are not.
     for_many_runs: Arc<OnceLock<Surface>>,
-    /// The functions that F − C is made of, by the hashes of their programs.
-    faces: Arc<OnceLock<FxHashMap<u64, Surface>>>,
+    /// The functions that F − C is made of.
+    faces: Arc<OnceLock<FxHashMap<Program, Surface>>>,
     stop: Stop,
 }
 
@@ -145,14 +144,14 @@ impl Surface {
         self.value.composition(LONGEST_CHOICE)
     }
 
-    /// The surface of one of these, by its program and the hash of that. Its kernels are made for few runs, and kept.
-    pub(crate) fn face(&self, hash: u64, program: &Program) -> Option<&Self> {
+    /// The surface of one of these, by its program. Its kernels are made for few runs, and kept.
+    pub(crate) fn face(&self, program: &Program) -> Option<&Self> {
         let find = || {
             let composition = self.composition();
             let faces = composition.iter().flat_map(Composition::functions);
-            faces.map(|face| (FxBuildHasher.hash_one(face), self.reduced_to(face.clone()))).collect()
+            faces.map(|face| (face.clone(), self.reduced_to(face.clone()))).collect()
         };
-        self.faces.get_or_init(find).get(&hash).filter(|face| face.program() == program)
+        self.faces.get_or_init(find).get(program)
     }
 
     /// The surface of another function, on which work ends with that on this one.

@@ -137,6 +137,8 @@ impl PartialEq for Program {
     }
 }
 
+impl Eq for Program {}
+
 /// As [`PartialEq`] has it.
 impl Hash for Program {
     fn hash<H: Hasher>(&self, state: &mut H) {

@@ -88,7 +88,7 @@ impl Formulas {
         }
         let operations = program.operations() as u64;
         let surface =
-            outer.face(hash, program).cloned().unwrap_or_else(|| outer.surface.reduced_to(program.clone()));
+            outer.face(program).cloned().unwrap_or_else(|| outer.surface.reduced_to(program.clone()));
         let formula = Arc::new(Formula::new(surface, patience, outer.least_with_forms));
         if self.have_room() {
             self.room.update(Ordering::Relaxed, Ordering::Relaxed, |room| room.saturating_sub(operations));
@@ -203,9 +203,9 @@ impl Formula {
         self.surface.program()
     }
 
-    /// The surface of one of the functions that it is made of everywhere, if it is F, by the hash of its program.
-    fn face(&self, hash: u64, program: &Program) -> Option<&Surface> {
-        if self.is_whole { self.surface.face(hash, program) } else { None }
+    /// The surface of one of the functions that it is made of everywhere, if it is F.
+    fn face(&self, program: &Program) -> Option<&Surface> {
+        if self.is_whole { self.surface.face(program) } else { None }
     }
 
     /// Whether it is F as it is everywhere.

@@ -11,6 +11,9 @@ use crate::{Region, Span, Tile};
 /// Components beyond this size are left to rays one by one: below it nothing here overflows.
 const LARGEST: f64 = 1e100;
 
+/// Rays of areas of so many columns or rows are counted one by one.
+const COUNTED: usize = 8;
+
 /// What the roundings of a box's ends come to at most, as part of the ends.
 const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
 
@@ -109,9 +112,6 @@ impl Beam {
         [o.by_column + t * d.by_column, o.by_row + t * d.by_row]
     }
 }
-
-/// Rays of areas of so many columns or rows are counted one by one.
-const COUNTED: usize = 8;
 
 /// How many rays of a part of a tile meet the region. As both are convex, rays whose corners meet it all do.
 pub(super) fn count_in(region: &Region, tile: &Tile<'_>, area: Area) -> u64 {
