@@ -133,8 +133,36 @@ pub(super) fn count_in(region: &Region, tile: &Tile<'_>, area: Area) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use iso_expr::random::Random;
+
     use super::*;
-    use crate::Ray;
+    use crate::{Raster, Ray};
+
+    #[test]
+    fn rays_that_meet_the_region_are_counted() {
+        let mut random = Random::new(9);
+        let region = Region::new(DVec3::splat(-1.0), DVec3::splat(1.0)).unwrap();
+        let [mut fewest, mut most] = [u64::MAX, 0];
+        for round in 0..200 {
+            let eye = DVec3::from_array([(); 3].map(|()| random.between(-4.0, 4.0)));
+            let forward = -eye.normalize();
+            let (right, down) = forward.any_orthonormal_pair();
+            let pixel = random.between(0.01, 0.2);
+            let raster = if round % 2 == 0 {
+                Raster::Parallel { middle: eye, right: pixel * right, down: pixel * down, direction: forward }
+            } else {
+                Raster::Spreading { eye, forward, right: 0.1 * pixel * right, down: 0.1 * pixel * down }
+            };
+            let (width, height) = (1 + random.below(40), 1 + random.below(40));
+            let corner = [random.below(60) as f64 - 50.0, random.below(60) as f64 - 50.5];
+            let tile = Tile::of(&raster, corner, width, height);
+            let expected = tile.rays().filter(|ray| region.clip(ray).is_some()).count() as u64;
+            let area = Area { column: 0, row: 0, width, height };
+            assert_eq!(count_in(&region, &tile, area), expected, "{raster:?}, {corner:?}, {width}×{height}");
+            (fewest, most) = (fewest.min(expected), most.max(expected));
+        }
+        assert!(fewest == 0 && most > 500, "{fewest}..{most}");
+    }
 
     #[test]
     fn beams_whose_rays_are_farther_apart_than_any_double_are_out_of_proportion() {

@@ -112,10 +112,12 @@ fn normals_are_those_of_gradients_next_to_the_hit_alone() {
     }
     assert!(normals[0].is_nan() && normals[2].is_nan());
     // For other rays F is taken again, where this one was decided before, and not near its root.
+    let found: Vec<_> = bundle.hits().collect();
     bundle.t[0] = 1.0 + 1e-6;
-    bundle.conclude(simd, &[1e-6; ROW], (&sight, false));
+    bundle.conclude(simd, &[2e-6; ROW], (&sight, false));
     bundle.put_normals(simd, ([&yz, &x, &yz], sight.tolerance), &mut normals);
     assert_eq!(normals[1], DVec3::X);
+    assert!(found.len() == 1 && bundle.hits().eq(found));
 }
 
 #[test]
