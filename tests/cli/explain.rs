@@ -83,6 +83,27 @@ fn the_plan_of_a_depth_map_has_no_normals_and_no_grid() {
 }
 
 #[test]
+fn numbers_are_narrower_than_colours_unless_asked_otherwise() {
+    let case = Case::new();
+    for (flags, expected) in [
+        (&["-o", "a.png"][..], "1/256 of a pixel"),
+        (&["-o", "a.png", "--accuracy", "1e-5"], "1e-5 of the distance"),
+        (&["--depth", "d.exr", "-o", "a.png"], "1e-12 of the distance"),
+        (&["--normals", "n.exr"], "1e-12 of the distance"),
+        (&["--points", "p.csv"], "1e-12 of the distance"),
+        (&["--points", "p.csv", "--accuracy", "0.001"], "1e-3 of the distance"),
+    ] {
+        let flags = [&["explain", PAPER, "--section", "plan"], flags].concat();
+        let text = case.run(&flags).exits(0).stdout();
+        assert!(text.contains(&format!("roots are enclosed to {expected}\n")), "{text}");
+        let json = case.run(&[&flags[..], &["--json"]].concat()).exits(0).json();
+        assert_eq!(json["plan"]["accuracy"], expected);
+    }
+    let sampled = ["explain", PAPER, "--section", "plan", "--method", "grid", "--json"];
+    assert!(case.run(&sampled).exits(0).json()["plan"]["accuracy"].is_null());
+}
+
+#[test]
 fn the_plan_says_why() {
     let flags = ["explain", "x^2 + y^2 = 1", "--section", "plan", "--method", "grid"];
     let text = Case::new().run(&flags).exits(0).stdout();

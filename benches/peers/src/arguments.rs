@@ -7,7 +7,7 @@ use clap::Parser;
 use iso_benches::surfaces::{SUBJECTS, Subject};
 use iso_expr::Program;
 
-use crate::iso::{EngineName, Method};
+use crate::iso::{EngineName, Method, Width};
 use crate::model::read_model;
 
 /// Compares this project with fidget, and with POV-Ray when it is installed.
@@ -40,6 +40,9 @@ pub struct Arguments {
     /// This project's method.
     #[arg(long, value_enum, default_value = "certified")]
     pub method: Method,
+    /// How narrowly it encloses roots where it proves them.
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "pixels,narrow")]
+    pub widths: Vec<Width>,
     /// This project's engine.
     #[arg(long, value_enum, default_value = "jit")]
     pub engine: EngineName,

@@ -11,7 +11,7 @@ use iso_render::StatusCounts;
 use crate::arguments::{Arguments, Body};
 use crate::depths::DepthError;
 use crate::fidget_engines::Fidget;
-use crate::iso::{Answer, Iso};
+use crate::iso::{Answer, Iso, Width};
 use crate::povray::PovRay;
 use crate::renderer::Renderer;
 use crate::view::SquareView;
@@ -62,11 +62,10 @@ impl Comparison {
     /// When this project cannot render the surface, or a program fails while it renders.
     pub fn run(body: &Body, size: u32, arguments: &Arguments) -> Result<Self, Box<dyn Error>> {
         let view = SquareView { radius: body.radius, size };
-        let iso = Iso::new(&body.program, view, arguments.method, arguments.engine)?;
-        let Answer { depths, decided, counts } = iso.answer()?;
+        let Answer { depths, decided, counts } = iso(body, view, arguments, Width::Narrow)?.answer()?;
         let mut measured = Vec::new();
         let mut renderers: Vec<(Box<dyn Renderer>, Samples)> = Vec::new();
-        for renderer in renderers_of(body, view, arguments, iso) {
+        for renderer in renderers_of(body, view, arguments) {
             match renderer {
                 Ok(renderer) => renderers.push((renderer, Samples::default())),
                 Err(error) => eprintln!("{}: {error}", body.name),
@@ -132,15 +131,21 @@ pub const VM: &str = "fidget VM";
 /// The name of fidget's compiler.
 pub const JIT: &str = "fidget JIT";
 
+/// This project, ready to render.
+fn iso(body: &Body, view: SquareView, arguments: &Arguments, width: Width) -> Result<Iso, Box<dyn Error>> {
+    Iso::new(&body.program, view, (arguments.method, width), arguments.engine)
+}
+
 /// All programs, ready to render; an error for each that cannot.
 fn renderers_of(
     body: &Body,
     view: SquareView,
     arguments: &Arguments,
-    iso: Iso,
 ) -> Vec<Result<Box<dyn Renderer>, Box<dyn Error>>> {
     let program = &body.program;
-    let mut renderers: Vec<Result<Box<dyn Renderer>, Box<dyn Error>>> = vec![Ok(Box::new(iso))];
+    let of_width = |width: &Width| iso(body, view, arguments, *width).map(|iso| Box::new(iso) as _);
+    let mut renderers: Vec<Result<Box<dyn Renderer>, Box<dyn Error>>> =
+        arguments.widths.iter().map(of_width).collect();
     if !arguments.without_fidget {
         renderers.extend([
             Fidget::<VmFunction>::new(VM, program, view).map(|renderer| Box::new(renderer) as _),
@@ -148,7 +153,7 @@ fn renderers_of(
         ]);
     }
     if arguments.povray_turns > 0 && PovRay::is_installed() {
-        let expected = |view| Iso::new(program, view, arguments.method, arguments.engine)?.answer();
+        let expected = |view| iso(body, view, arguments, Width::Narrow)?.answer();
         let povray = PovRay::tuned(program, view, arguments.threads, expected);
         renderers.push(povray.map(|renderer| Box::new(renderer) as _));
     }

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use iso_expr::{Engine, Interpreter, Program};
-use iso_grid::{Certified, GridSettings, Kernel, Surface, Tracer};
+use iso_grid::{Accuracy, GridSettings, Kernel, Surface, Tracer};
 use iso_jit::Jit;
 use iso_render::{
     Camera, Layers, Look, Picture, Plan, Projection, Scene, Shading, Smoothing, Status, StatusCounts, Wanted,
@@ -24,6 +24,15 @@ pub enum Method {
     Certified,
     /// The paper's, with 30 cells along each axis.
     Grid,
+}
+
+/// How narrowly the certified method encloses roots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Width {
+    /// To 1/256 of a pixel, as pictures are drawn.
+    Pixels,
+    /// To 1e-12 of the distance, as tables are made.
+    Narrow,
 }
 
 /// What evaluates formulas.
@@ -47,6 +56,7 @@ pub struct Answer {
 
 /// One surface, ready to be rendered.
 pub struct Iso {
+    width: Width,
     surface: Surface,
     method: iso_grid::Method,
     tracer: Box<dyn Tracer>,
@@ -56,10 +66,24 @@ pub struct Iso {
     picture: Option<Picture>,
 }
 
-impl Iso {
-    /// This project's name in tables.
-    pub const NAME: &'static str = "iso";
+impl Width {
+    /// The name in tables of this project with such enclosures.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pixels => "iso",
+            Self::Narrow => "iso, 1e-12",
+        }
+    }
 
+    fn accuracy(self) -> Accuracy {
+        match self {
+            Self::Pixels => Accuracy::Pixels,
+            Self::Narrow => Accuracy::NARROW,
+        }
+    }
+}
+
+impl Iso {
     /// Compiles the kernels and prepares the method. What is too large for native code is interpreted.
     ///
     /// # Errors
@@ -67,14 +91,13 @@ impl Iso {
     pub fn new(
         program: &Program,
         view: SquareView,
-        method: Method,
+        (method, width): (Method, Width),
         engine: EngineName,
     ) -> Result<Self, Box<dyn Error>> {
-        let interpreted = || Self::with_engine(Arc::new(Interpreter), program, view, method);
+        let interpreted = || Self::with_engine(Arc::new(Interpreter), program, view, (method, width));
         match engine {
-            EngineName::Jit => {
-                Self::with_engine(Arc::new(Jit::new()?), program, view, method).or_else(|_| interpreted())
-            }
+            EngineName::Jit => Self::with_engine(Arc::new(Jit::new()?), program, view, (method, width))
+                .or_else(|_| interpreted()),
             EngineName::Interpreter => interpreted(),
         }
     }
@@ -83,12 +106,12 @@ impl Iso {
         engine: Arc<dyn Engine>,
         program: &Program,
         view: SquareView,
-        method: Method,
+        (method, width): (Method, Width),
     ) -> Result<Self, Box<dyn Error>> {
         let surface = Surface::new(engine, program.clone());
         let region = view.region()?;
         let method = match method {
-            Method::Certified => iso_grid::Method::Certified { accuracy: Certified::ACCURACY },
+            Method::Certified => iso_grid::Method::Certified { accuracy: width.accuracy() },
             Method::Grid => iso_grid::Method::Grid(GridSettings::default()),
         };
         let tracer = method.prepare(&surface, region)?;
@@ -99,7 +122,7 @@ impl Iso {
         }
         let camera = view.camera()?;
         let shading = Shading::new(&camera, &Look::DEFAULT);
-        Ok(Self { surface, method, tracer, camera, shading, view, picture: None })
+        Ok(Self { width, surface, method, tracer, camera, shading, view, picture: None })
     }
 
     fn draw_over(&self, picture: &mut Picture, layers: Layers) -> Result<(), Box<dyn Error>> {
@@ -144,7 +167,7 @@ impl Iso {
 
 impl Renderer for Iso {
     fn name(&self) -> &'static str {
-        Self::NAME
+        self.width.name()
     }
 
     fn render(&mut self) -> Result<f64, Box<dyn Error>> {

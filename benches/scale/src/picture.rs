@@ -59,7 +59,7 @@ impl Subject {
         let camera = Camera::new(View::DEFAULT, projection, &self.region, size)?;
         let plan = Plan::new(&Wanted {
             program: self.surface.program(),
-            method: iso_grid::Method::Certified { accuracy: Certified::ACCURACY },
+            method: iso_grid::Method::CERTIFIED,
             has_parameters: false,
             projection: Some(projection),
             box_is_given: true,

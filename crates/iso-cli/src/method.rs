@@ -1,15 +1,14 @@
 //! The method of intersection and the region, from flags.
 
 use iso_expr::CompileError;
-use iso_grid::{
-    Certified, Fitted, GridSettings, Method, Region, RootFinder, RootFinding, Surface, Workspace,
-};
+use iso_grid::{Accuracy, Fitted, GridSettings, Method, Region, RootFinder, RootFinding, Surface, Workspace};
 
 use crate::failure::Failure;
 use crate::flags::{MethodFlags, MethodName, name_of};
 
-/// The method that `flags` name. A setting that the method does not have is an error.
-pub(crate) fn method(flags: &MethodFlags) -> Result<Method, Failure> {
+/// The method that `flags` name, which encloses roots as narrowly as `usual` if it proves them and no accuracy is given. A setting that the method does
+/// not have is an error.
+pub(crate) fn method(flags: &MethodFlags, usual: Accuracy) -> Result<Method, Failure> {
     let refuse = |flag: &str, is_given: bool, methods: &str| {
         let method = name_of(flags.method);
         if !is_given {
@@ -33,7 +32,7 @@ pub(crate) fn method(flags: &MethodFlags) -> Result<Method, Failure> {
         MethodName::Certified => {
             refuse_grid()?;
             refuse_sampling()?;
-            Ok(Method::Certified { accuracy: flags.accuracy.unwrap_or(Certified::ACCURACY) })
+            Ok(Method::Certified { accuracy: flags.accuracy.map_or(usual, Accuracy::Relative) })
         }
         MethodName::Direct => {
             refuse_grid()?;

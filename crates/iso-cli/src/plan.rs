@@ -3,13 +3,13 @@
 use std::io::{self, Write};
 
 use iso_expr::{Axis, Formula, Program};
-use iso_grid::{Kernel, Method, Surface};
+use iso_grid::{Accuracy, Kernel, Method, Surface};
 use iso_render::{Buffer, Decision, Given, Layers, Pass, Plan, Smoothing, Wanted};
 use serde::Serialize;
 
 use crate::camera::projection;
 use crate::failure::Failure;
-use crate::flags::PictureFlags;
+use crate::flags::{LayerFlags, PictureFlags};
 use crate::method::method;
 use crate::pictures::layers;
 
@@ -17,13 +17,20 @@ use crate::pictures::layers;
 pub(crate) fn plan(flags: &PictureFlags, formula: &Formula, program: &Program) -> Result<Plan, Failure> {
     Ok(Plan::new(&Wanted {
         program,
-        method: method(&flags.method)?,
+        method: method(&flags.method, usual_accuracy(&flags.output))?,
         has_parameters: !formula.parameters().is_empty(),
         projection: Some(projection(&flags.camera)),
         box_is_given: flags.method.region.region.is_some(),
         layers: layers(&flags.output),
         smoothing: flags.output.smooth,
     }))
+}
+
+/// How narrowly roots are enclosed unless asked otherwise: colours need a share of a pixel, numbers that are written more.
+fn usual_accuracy(output: &LayerFlags) -> Accuracy {
+    let are_numbers_written =
+        [&output.depth, &output.normals, &output.points].into_iter().any(Option::is_some);
+    if are_numbers_written { Accuracy::NARROW } else { Accuracy::Pixels }
 }
 
 /// The plan of following rays that are no picture's by `method`, up to outcomes and normals.
@@ -44,6 +51,9 @@ pub(crate) fn plan_of_rays(method: Method, program: &Program, box_is_given: bool
 pub(crate) struct PlanReport {
     /// The method of intersection.
     method: &'static str,
+    /// How narrowly it encloses roots, if it does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    accuracy: Option<String>,
     /// Operations of the program of F − C.
     operations: Operations,
     /// The arguments that F takes.
@@ -100,6 +110,7 @@ impl PlanReport {
         let by_signs = (surface.program() != followed.program()).then_some(by_signs);
         Self {
             method: plan.method().name(),
+            accuracy: plan.method().accuracy().map(|accuracy| accuracy.to_string()),
             operations: Operations { before, after, by_signs },
             arguments: lines(plan.arguments(), Axis::name),
             constants: lines(plan.constants(), Given::name),
@@ -129,6 +140,9 @@ impl PlanReport {
             "    method {}; F − C takes {after} operations, {before} before simplification",
             self.method
         )?;
+        if let Some(accuracy) = &self.accuracy {
+            writeln!(writer, "    roots are enclosed to {accuracy}")?;
+        }
         if let Some(operations) = by_signs {
             writeln!(
                 writer,

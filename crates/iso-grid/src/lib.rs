@@ -4,6 +4,7 @@
 //! A [`Surface`] offers the kernels of F − C, whatever engine made them. A [`Tracer`] is a method of intersection: it says
 //! for every [`Ray`] how its search for the first root inside the [`Region`] ended, an [`Outcome`].
 
+mod accuracy;
 mod area;
 mod batch;
 mod certified;
@@ -29,6 +30,7 @@ mod surface;
 mod testing;
 mod tracer;
 
+pub use accuracy::Accuracy;
 pub use certified::Certified;
 pub use counters::Counters;
 pub use error::GridError;

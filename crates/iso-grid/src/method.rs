@@ -1,14 +1,16 @@
 //! The methods of intersection, by name and settings.
 
-use crate::{Certified, Direct, Grid, GridError, GridSettings, Octree, Region, RootFinding, Surface, Tracer};
+use crate::{
+    Accuracy, Certified, Direct, Grid, GridError, GridSettings, Octree, Region, RootFinding, Surface, Tracer,
+};
 
 /// A method of intersection with its settings, not yet prepared for a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
     /// Prove every ray: [`Certified`].
     Certified {
-        /// The width to which roots are enclosed: see [`Certified::with_accuracy`].
-        accuracy: f64,
+        /// How narrowly roots are enclosed.
+        accuracy: Accuracy,
     },
     /// The paper's grid: [`Grid`].
     Grid(GridSettings),
@@ -25,7 +27,7 @@ pub enum Method {
 
 impl Method {
     /// The certified method as it is unless told otherwise.
-    pub const CERTIFIED: Self = Self::Certified { accuracy: Certified::ACCURACY };
+    pub const CERTIFIED: Self = Self::Certified { accuracy: Accuracy::NARROW };
 
     /// The method's name in reports.
     pub fn name(&self) -> &'static str {
@@ -34,6 +36,14 @@ impl Method {
             Self::Grid(_) => "grid",
             Self::Octree(_) => "octree",
             Self::Direct { .. } => "direct",
+        }
+    }
+
+    /// How narrowly the method encloses roots; `None` for a method that samples.
+    pub fn accuracy(&self) -> Option<Accuracy> {
+        match self {
+            Self::Certified { accuracy } => Some(*accuracy),
+            Self::Grid(_) | Self::Octree(_) | Self::Direct { .. } => None,
         }
     }
 

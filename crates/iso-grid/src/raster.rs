@@ -146,6 +146,17 @@ impl<'a> Tile<'a> {
         }
     }
 
+    /// How far neighbouring rays are apart at `t`, as a difference of t; nothing of listed ones.
+    pub(crate) fn spacing(&self, t: f64) -> f64 {
+        let Rays::Raster { raster, .. } = self.rays else { return 0.0 };
+        match raster {
+            Raster::Parallel { right, down, direction, .. } => {
+                right.length().min(down.length()) / direction.length()
+            }
+            Raster::Spreading { right, down, .. } => t * right.length().min(down.length()),
+        }
+    }
+
     /// How many columns there are.
     pub fn width(&self) -> usize {
         self.width

@@ -6,7 +6,8 @@ use glam::DVec3;
 use iso_expr::random::Random;
 use iso_expr::{Ast, Interpreter, Program};
 use iso_grid::{
-    Certified, Counters, Hit, Outcome, Outcomes, Raster, Ray, Region, Span, Surface, Tile, Tracer, Workspace,
+    Accuracy, Certified, Counters, Hit, Outcome, Outcomes, Raster, Ray, Region, Span, Surface, Tile, Tracer,
+    Workspace,
 };
 
 /// Formulas, half sides of their regions, and what they are tried for.
@@ -389,14 +390,14 @@ fn what_is_proven_coarsely_is_proven_narrowly_too() {
         let program = read(formula);
         for view in views {
             let narrow = alone(&certified(&program, half), &view.rays);
-            for accuracy in [1e-2, 1e-4] {
+            for accuracy in [Accuracy::Relative(1e-2), Accuracy::Relative(1e-4), Accuracy::Pixels] {
                 let coarse = certified(&program, half).with_accuracy(accuracy);
                 for (number, (a, b)) in
                     together(&coarse, &view).concat().iter().zip(narrow.iter().cycle()).enumerate()
                 {
                     assert!(
                         agree(*a, *b),
-                        "{formula}, {}, ray {number}, {accuracy}: {a:?}, {b:?}",
+                        "{formula}, {}, ray {number}, {accuracy:?}: {a:?}, {b:?}",
                         view.name
                     );
                 }

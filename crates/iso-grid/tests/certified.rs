@@ -7,7 +7,9 @@ use glam::DVec3;
 use iso_expr::engine::{Boxes, Enclosures};
 use iso_expr::random::Random;
 use iso_expr::{Ast, Decoration, Engine, Interpreter, Interval, Operation, Program, Scratch};
-use iso_grid::{Certified, Hit, Outcome, Outcomes, Ray, Region, Span, Surface, Tile, Tracer, Workspace};
+use iso_grid::{
+    Accuracy, Certified, Hit, Outcome, Outcomes, Ray, Region, Span, Surface, Tile, Tracer, Workspace,
+};
 
 const X: DVec3 = DVec3::X;
 
@@ -305,7 +307,7 @@ fn work_without_end_is_given_up() {
 
 #[test]
 fn a_coarser_accuracy_gives_a_wider_enclosure_that_holds_the_root() {
-    let tracer = certified("x^3 + x - 0.3", 1.5).with_accuracy(1e-3);
+    let tracer = certified("x^3 + x - 0.3", 1.5).with_accuracy(Accuracy::Relative(1e-3));
     let Outcome::Hit(coarse) = trace(&tracer, &[Ray { origin: -3.0 * X, direction: X }])[0] else { panic!() };
     let Outcome::Hit(fine) = end("x^3 + x - 0.3", 1.5, -3.0 * X, X) else { panic!() };
     assert!(coarse.bracket.start <= fine.bracket.start && fine.bracket.end <= coarse.bracket.end);
@@ -314,7 +316,7 @@ fn a_coarser_accuracy_gives_a_wider_enclosure_that_holds_the_root() {
 #[test]
 fn an_accuracy_beyond_rounding_gives_what_rounding_allows() {
     for accuracy in [1e-300, 0.0, -1.0, f64::NAN] {
-        let tracer = certified("x^3 + x - 0.3", 1.5).with_accuracy(accuracy);
+        let tracer = certified("x^3 + x - 0.3", 1.5).with_accuracy(Accuracy::Relative(accuracy));
         let (rays, mut outcomes) = ([Ray { origin: -3.0 * X, direction: X }; 64], Outcomes::default());
         tracer.trace_tile(&mut Workspace::default(), Tile::listed(&rays, 8), &mut outcomes, None);
         for outcome in trace(&tracer, &rays[..1]).into_iter().chain(outcomes.iter()) {

@@ -5,10 +5,15 @@ use std::sync::Arc;
 use glam::DVec3;
 use iso_expr::random::Random;
 use iso_expr::{Ast, Interpreter};
-use iso_grid::{Certified, Outcome, Outcomes, Raster, Ray, Region, Surface, Tile, Tracer, Workspace};
+use iso_grid::{
+    Accuracy, Certified, Outcome, Outcomes, Raster, Ray, Region, Surface, Tile, Tracer, Workspace,
+};
 
 /// Columns and rows of a picture.
 const SIDE: usize = 40;
+
+const ACCURACIES: [Accuracy; 4] =
+    [Accuracy::NARROW, Accuracy::Relative(1e-6), Accuracy::Relative(1e-3), Accuracy::Pixels];
 
 /// Where a margin, a discriminant, a slope or the distance from a face of the region is less, a ray is not compared.
 const UNCLEAR: f64 = 1e-5;
@@ -140,7 +145,7 @@ fn cut_quadrics_are_met_where_quadratic_equations_say() {
     let [mut hits, mut misses, mut open] = [0; 3];
     for number in 0..240 {
         let (scene, raster) = (Scene::random(&mut random), raster(&mut random));
-        let accuracy = [1e-12, 1e-6, 1e-3][number % 3];
+        let accuracy = ACCURACIES[number % ACCURACIES.len()];
         let formula = scene.formula();
         let program = Ast::parse(&formula).unwrap().lower(&[]).unwrap().minus_level(0.0).simplified();
         let surface = Surface::new(Arc::new(Interpreter), program);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 use iso_expr::{Ast, Axis, Interpreter, Program};
-use iso_grid::{Certified, GridSettings, Kernel, Method, Region, RootFinding, Surface};
+use iso_grid::{GridSettings, Kernel, Method, Region, RootFinding, Surface};
 use iso_render::{
     Buffer, Camera, Given, Layers, Look, Mosaic, Pass, Picture, Plan, Projection, Scene, Shading, Size,
     Smoothing, View, Wanted, render,
@@ -16,7 +16,7 @@ const ORTHOGRAPHIC: Projection = Projection::Orthographic { view_width: None };
 
 fn methods() -> [Method; 4] {
     [
-        Method::Certified { accuracy: Certified::ACCURACY },
+        Method::CERTIFIED,
         Method::Grid(GridSettings::new([12, 10, 9])),
         Method::Octree(GridSettings::new([12; 3])),
         Method::Direct { step: GridSettings::STEP, roots: RootFinding::PAPER },
@@ -94,7 +94,7 @@ fn nothing_is_compiled_ahead_of_large_formulas_of_which_less_is_left_in_places()
             assert_eq!(compiled.is_empty(), matches!(method, Method::Certified { .. }), "{method:?}");
         }
     }
-    let certified = Method::Certified { accuracy: Certified::ACCURACY };
+    let certified = Method::CERTIFIED;
     let fitted = Plan::new(&Wanted { box_is_given: false, ..wanted(&program, certified, Layers::ALL) });
     assert_eq!(planned(&fitted), [Kernel::ValueEnclosures], "a box is fitted by it");
 }

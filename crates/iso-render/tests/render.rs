@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 use iso_expr::{Axis, Interpreter, NodeId, Operation, Program};
-use iso_grid::{Certified, Method, Region, Stop, Surface};
+use iso_grid::{Method, Region, Stop, Surface};
 use iso_render::{
     Camera, Layers, Look, Mosaic, Picture, Plan, Projection, Scene, Shading, Size, Smoothing, Status,
     StatusCounts, View, Wanted, render_over,
@@ -51,7 +51,7 @@ fn draw_over(picture: &mut Picture, stop: &Stop, threads: usize, last: u64) {
     let camera = Camera::new(view, projection, &region, size).unwrap();
     let plan = Plan::new(&Wanted {
         program: surface.program(),
-        method: Method::Certified { accuracy: Certified::ACCURACY },
+        method: Method::CERTIFIED,
         has_parameters: false,
         projection: Some(projection),
         box_is_given: true,

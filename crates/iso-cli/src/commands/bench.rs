@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::sync::Arc;
 
 use iso_expr::{Engine, Interpreter};
-use iso_grid::{Method, Surface};
+use iso_grid::{Accuracy, Method, Surface};
 use iso_render::{Camera, Projection, Size, View};
 use serde::Serialize;
 
@@ -29,7 +29,7 @@ pub(crate) fn run(flags: BenchFlags) -> Result<(), Failure> {
     let camera = Camera::new(View::DEFAULT, Projection::DEFAULT, &region, size)?;
     let bench = Bench {
         subject: Subject { program, region, projection: Projection::DEFAULT, camera, size },
-        method: method(&flags.method)?,
+        method: method(&flags.method, Accuracy::Pixels)?,
         points: SpreadPoints::over(&region),
     };
     let runs = flags.measurement.runs.get() as usize;

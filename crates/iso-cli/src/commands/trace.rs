@@ -6,7 +6,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use iso_expr::CompileError;
-use iso_grid::{Outcome, OutcomeKind, Outcomes, Ray, Surface, Tracer, Workspace, normals};
+use iso_grid::{Accuracy, Outcome, OutcomeKind, Outcomes, Ray, Surface, Tracer, Workspace, normals};
 use iso_render::Status;
 use rayon::prelude::*;
 
@@ -28,7 +28,7 @@ const BATCH: usize = 1024;
 /// Follows rays.
 pub(crate) fn run(flags: TraceFlags) -> Result<(), Failure> {
     let interruption = Interruption::new(&flags.limit);
-    let method = method(&flags.method)?;
+    let method = method(&flags.method, Accuracy::NARROW)?;
     let form = flags.table.form();
     let destination = Destination::new(flags.table.output)?;
     let formula_file = file_of(&flags.formula.formula);

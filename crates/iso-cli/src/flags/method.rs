@@ -47,7 +47,8 @@ pub(crate) struct MethodFlags {
     #[arg(long, value_name = "WIDTH", value_parser = values::tolerance)]
     pub(crate) tolerance: Option<f64>,
 
-    /// The width, relative to t, to which the certified method encloses roots; a coarser one may leave more contacts and near misses open [default: 1e-12]
+    /// The width, relative to t, to which the certified method encloses roots; a coarse one may leave more contacts and near misses open [default:
+    /// 1/256 of a pixel where only colours are written, else 1e-12]
     #[arg(long, value_name = "WIDTH", value_parser = values::accuracy)]
     pub(crate) accuracy: Option<f64>,
 }

@@ -1,6 +1,6 @@
 //! The axes of a sweep, and the settings along them.
 
-use iso_grid::{Certified, GridSettings, Method, RootFinder, RootFinding};
+use iso_grid::{Accuracy, GridSettings, Method, RootFinder, RootFinding};
 use serde::Serialize;
 
 use crate::flags::{EngineName, MethodName, name_of};
@@ -59,7 +59,7 @@ impl Setting {
             _ => cells.map(|settings| settings.step),
         };
         let accuracy = match method {
-            Method::Certified { accuracy } => accuracy,
+            Method::Certified { accuracy: Accuracy::Relative(width) } => width,
             _ => 0.0,
         };
         let roots = method.roots();
@@ -105,10 +105,8 @@ fn flags(engine: EngineName, method: Method, cells: Option<GridSettings>, step: 
     if roots.tolerance != RootFinding::PAPER.tolerance {
         flags.push_str(&format!(" --tolerance {:e}", roots.tolerance));
     }
-    if let Method::Certified { accuracy } = method
-        && accuracy != Certified::ACCURACY
-    {
-        flags.push_str(&format!(" --accuracy {accuracy:e}"));
+    if let Method::Certified { accuracy: Accuracy::Relative(width) } = method {
+        flags.push_str(&format!(" --accuracy {width:e}"));
     }
     flags
 }
@@ -180,7 +178,9 @@ impl Axes {
             place => GridSettings { refinement: [self.refinements[place - 1]; 3], ..papers },
         };
         match name {
-            MethodName::Certified if roots.tolerance > 0.0 => Method::Certified { accuracy: roots.tolerance },
+            MethodName::Certified if roots.tolerance > 0.0 => {
+                Method::Certified { accuracy: Accuracy::Relative(roots.tolerance) }
+            }
             MethodName::Certified => Method::CERTIFIED,
             MethodName::Grid => Method::Grid(settings),
             MethodName::Octree => Method::Octree(settings),
@@ -230,7 +230,7 @@ mod tests {
         assert_eq!(settings.len(), 2 * cells + direct + certified);
         let flags: Vec<&str> = settings.iter().map(|setting| setting.flags.as_str()).collect();
         for expected in [
-            "--method certified --engine jit",
+            "--method certified --engine jit --accuracy 1e-12",
             "--method certified --engine jit --accuracy 1e-6",
             "--method octree --engine interp --grid 30 --step 0.05",
             "--method grid --engine jit --grid 8 --refine 2 --step 0.05",

@@ -21,7 +21,7 @@ use crate::plan::plan_of_rays;
 
 /// The methods as they are without flags, the certified one first: the others are held against it.
 const METHODS: [fn() -> Method; 4] = [
-    || Method::Certified { accuracy: Certified::ACCURACY },
+    || Method::CERTIFIED,
     || Method::Grid(GridSettings::default()),
     || Method::Octree(GridSettings::default()),
     || Method::Direct { step: GridSettings::STEP, roots: RootFinding::PAPER },

@@ -21,7 +21,9 @@ use glam::DVec3;
 use iso_expr::{BatchKernel, CompileError};
 
 use crate::tracer::trace_each;
-use crate::{Counters, Outcome, Outcomes, Ray, Region, Span, Stop, Surface, Tile, Traced, Tracer, Workspace};
+use crate::{
+    Accuracy, Counters, Outcome, Outcomes, Ray, Region, Span, Stop, Surface, Tile, Traced, Tracer, Workspace,
+};
 pub(crate) use beams::Memory;
 use beams::Subdivision;
 use cells::Cell;
@@ -69,7 +71,7 @@ pub struct Certified {
     polynomial: Option<Polynomial>,
     region: Region,
     cells: Arc<Cells>,
-    accuracy: f64,
+    accuracy: Accuracy,
     stop: Stop,
 }
 
@@ -77,9 +79,6 @@ pub struct Certified {
 const EASY: u64 = 128;
 
 impl Certified {
-    /// The width, relative to t and to 1 where t is smaller, to which a root is enclosed unless asked otherwise.
-    pub const ACCURACY: f64 = 1e-12;
-
     /// The method for a surface in a region.
     ///
     /// # Errors
@@ -93,7 +92,7 @@ impl Certified {
             polynomial: Polynomial::of(surface.program()),
             cells: by_signs.cells(&region),
             region,
-            accuracy: Self::ACCURACY,
+            accuracy: Accuracy::NARROW,
             stop: surface.stop().clone(),
         })
     }
@@ -104,10 +103,8 @@ impl Certified {
         Self { places: self.places.ignored(), ..self }
     }
 
-    /// The same with another accuracy than [`Self::ACCURACY`]: what is said stays proven. A coarser one takes fewer
-    /// steps to roots, and leaves more contacts and near misses open. Where rounding does not let a root be
-    /// enclosed so narrowly, and wherever this is not positive, it is enclosed as narrowly as rounding lets it.
-    pub fn with_accuracy(self, accuracy: f64) -> Self {
+    /// The same with another accuracy than [`Accuracy::NARROW`].
+    pub fn with_accuracy(self, accuracy: Accuracy) -> Self {
         Self { accuracy, ..self }
     }
 }
@@ -138,7 +135,7 @@ impl Certified {
                 points: 0,
                 operations: 0,
             },
-            accuracy: self.accuracy,
+            accuracy: self.accuracy.of_single_rays(),
             stop: &self.stop,
             clip,
             way: Way::Cells(Walk::new(&self.cells, ray, entry, entries)),

@@ -165,7 +165,7 @@ impl Subdivision<'_> {
 
     /// How wide the enclosure of a root in a part may be.
     pub(super) fn tolerance(&self, part: &Part) -> f64 {
-        self.certified.accuracy * part.stretch.start.max(1.0).min(part.stretch.end)
+        self.certified.accuracy.of_neighbours(part.stretch, self.tile.spacing(part.stretch.start))
     }
 
     /// The rays of a part that are still followed and may have a root there; says whether not too many may be followed in vain.
