@@ -146,6 +146,11 @@ impl<'a> Tile<'a> {
         }
     }
 
+    /// Whether there are rays between those of neighbouring columns and rows, too.
+    pub(crate) fn is_dense(&self) -> bool {
+        matches!(self.rays, Rays::Raster { .. })
+    }
+
     /// How far neighbouring rays are apart at `t`, as a difference of t; nothing of listed ones.
     pub(crate) fn spacing(&self, t: f64) -> f64 {
         let Rays::Raster { raster, .. } = self.rays else { return 0.0 };

@@ -1,15 +1,13 @@
 //! Rays side by side that are followed to their roots where F is monotone.
 
 use glam::DVec3;
-use iso_expr::{BatchKernel, Scratch};
-use pulp::{Simd, WithSimd};
+use pulp::Simd;
 
 use super::form::ROUNDING;
-use super::pixels::{STEPS, state};
-use super::sheaf::Start;
+use super::pixels::state;
+use super::pursuit::Guess;
 use crate::lanes::{Lanes, Mask, ROW, Row, parts};
 use crate::normals::{Asked, put_units};
-use crate::point_rows::{PointRows, row_of};
 use crate::raster::RayRow;
 use crate::{Hit, Span, Tile};
 
@@ -20,13 +18,13 @@ pub(crate) struct Bundle {
     pub(super) columns: [u32; ROW],
     pub(super) rows: [u32; ROW],
     places: [u32; ROW],
-    rays: RayRow,
+    pub(super) rays: RayRow,
     /// Where the part's certificate holds inside the region: starts and ends.
     pub(super) reach: [Row; 2],
     /// Where a root is looked for: everything before it is free of roots.
     pub(super) wanted: [Row; 2],
     /// Where F is to be taken next, inside `reach`.
-    t: Row,
+    pub(super) t: Row,
     /// F at the last place where its slope was taken, one over the slope, and how far t is from there: infinitely far, with the part's slope in the
     /// middle, before there is any.
     value: Row,
@@ -46,7 +44,7 @@ const NEAR: f64 = 8.0;
 
 /// What is to be taken of F next along the rays of a bundle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Need {
+pub(super) enum Need {
     /// Nothing: no ray is open.
     Nothing,
     /// What is wanted where rays meet the surface, for that is where they are likely to be.
@@ -56,6 +54,7 @@ enum Need {
 }
 
 /// What a double computed for F says about the root, all over a part.
+#[derive(Clone, Copy)]
 pub(super) struct Sight {
     /// One over the middle of the slopes of F.
     pub(super) inverse: f64,
@@ -133,24 +132,56 @@ impl Bundle {
 
     /// Begins with its open rays, where they are likely to have a root; says whether there are any.
     #[inline(always)]
-    fn begin<S: Simd>(&mut self, simd: S, tile: &Tile<'_>, (start, sight): (&Start<'_>, &Sight)) -> bool {
+    pub(super) fn begin<S: Simd>(
+        &mut self,
+        simd: S,
+        tile: &Tile<'_>,
+        (guess, sight): (&Guess<'_>, &Sight),
+    ) -> bool {
         let (columns, rows, width) = (doubles(&self.columns), doubles(&self.rows), tile.width() as u32);
         for lane in 0..ROW {
             self.places[lane] = self.rows[lane] * width + self.columns[lane];
         }
         let mut is_any_open = Mask::none(simd);
         for part in 0..parts::<S>() {
-            let at = |row: &Row| Lanes::of(simd, row, part);
-            let t = start.at_all([at(&columns), at(&rows)]);
-            t.between(at(&self.reach[0]), at(&self.reach[1])).put(&mut self.t, part);
             is_any_open = is_any_open | self.are_open(simd, part);
         }
         let are_open = is_any_open.is_any();
         if are_open {
-            tile.put_rays(simd, [&columns, &rows], &mut self.rays);
-            (self.step, self.inverse) = ([f64::INFINITY; ROW], [sight.inverse; ROW]);
+            self.set_off(simd, (tile, [&columns, &rows]), (guess, sight));
         }
         are_open
+    }
+
+    /// Begins along the rays in these columns and rows, which may stand between those of the tile.
+    #[inline(always)]
+    fn set_off<S: Simd>(
+        &mut self,
+        simd: S,
+        (tile, [columns, rows]): (&Tile<'_>, [&Row; 2]),
+        (guess, sight): (&Guess<'_>, &Sight),
+    ) {
+        for part in 0..parts::<S>() {
+            let at = |row: &Row| Lanes::of(simd, row, part);
+            let t = guess.at([at(columns), at(rows)]);
+            t.between(at(&self.reach[0]), at(&self.reach[1])).put(&mut self.t, part);
+        }
+        tile.put_rays(simd, [columns, rows], &mut self.rays);
+        (self.step, self.inverse) = ([f64::INFINITY; ROW], [sight.inverse; ROW]);
+    }
+
+    /// Rays in these columns and rows, along which F may be taken anywhere in a stretch.
+    #[inline(always)]
+    pub(super) fn feelers<S: Simd>(
+        simd: S,
+        (tile, [columns, rows]): (&Tile<'_>, [&Row; 2]),
+        stretch: Span,
+        (guess, sight): (&Guess<'_>, &Sight),
+    ) -> Self {
+        let mut feelers = Self { state: [state::OPEN; ROW], ..Self::default() };
+        feelers.look_along([stretch; 2]);
+        feelers.set_off(simd, (tile, [columns, rows]), (guess, sight));
+        feelers
     }
 
     #[inline(always)]
@@ -162,7 +193,7 @@ impl Bundle {
     /// inverse cubic interpolation (Hermite) between there and the last place. By the nearest of the part's slopes where F would have one that it does
     /// not have. Says what is needed next.
     #[inline(always)]
-    fn approach<S: Simd>(
+    pub(super) fn approach<S: Simd>(
         &mut self,
         simd: S,
         [values, slopes]: [&Row; 2],
@@ -215,7 +246,12 @@ impl Bundle {
     /// another. All roots in reach lie in its result, and if that lies in reach itself, there is one. Where it is about, the last slopes tell. Says
     /// what is needed next.
     #[inline(always)]
-    fn conclude<S: Simd>(&mut self, simd: S, values: &Row, (sight, is_first): (&Sight, bool)) -> Need {
+    pub(super) fn conclude<S: Simd>(
+        &mut self,
+        simd: S,
+        values: &Row,
+        (sight, is_first): (&Sight, bool),
+    ) -> Need {
         let all = |number| Lanes::all(simd, number);
         let [free, open] = [all(state::FREE), all(state::OPEN)];
         let [hit, lost] = [all(state::HIT), all(state::LOST)];
@@ -284,7 +320,7 @@ impl Bundle {
     /// Puts the normals of rays in their places that meet the surface within `distance` of where these gradients were taken: their directions,
     /// where squares neither overflow nor underflow.
     #[inline(always)]
-    fn put_normals<S: Simd>(
+    pub(super) fn put_normals<S: Simd>(
         &mut self,
         simd: S,
         (gradients, distance): ([&Row; 3], f64),
@@ -321,118 +357,6 @@ fn doubles(numbers: &[u32; ROW]) -> Row {
     // As signed ones, for which processors have an instruction.
     doubles.iter_mut().zip(numbers).for_each(|(double, number)| *double = f64::from(*number as i32));
     doubles
-}
-
-/// The pursuit of some rays.
-pub(super) struct Pursuit<'a> {
-    pub(super) tile: &'a Tile<'a>,
-    pub(super) start: &'a Start<'a>,
-    pub(super) bundles: &'a mut [Bundle],
-    /// Where roots are wanted, and where the certificate holds, if that is the same along all rays and the bundles do not know it.
-    pub(super) common: Option<[Span; 2]>,
-    pub(super) sight: &'a Sight,
-    pub(super) slopes: &'a dyn BatchKernel,
-    pub(super) last: Last<'a>,
-    pub(super) points: &'a mut PointRows,
-    pub(super) scratch: &'a mut Scratch,
-}
-
-/// What is taken where rays are likely to meet the surface.
-pub(super) enum Last<'a> {
-    /// F alone.
-    Value(&'a dyn BatchKernel),
-    /// F and its gradient, for the normals of a tile.
-    Gradient(&'a dyn BatchKernel, &'a mut [DVec3]),
-}
-
-/// How many bundles are pursued at once at most: as many as the nearest memory holds with all that is known of them.
-pub(super) const AT_ONCE: usize = 32;
-
-/// How many points a pursuit took: those where slopes were taken, and the others.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Taken {
-    pub(super) slopes: usize,
-    pub(super) last: usize,
-}
-
-impl Pursuit<'_> {
-    /// Begins with all bundles, and puts the points at which F is to be taken first; says which bundles have open rays, and how many these are.
-    #[inline(always)]
-    fn begin<S: Simd>(&mut self, simd: S) -> ([usize; AT_ONCE], usize) {
-        let (mut open, mut count) = ([0; AT_ONCE], 0);
-        let mut coordinates = self.points.replace(self.bundles.len());
-        for (number, bundle) in self.bundles.iter_mut().enumerate() {
-            if let Some(stretches) = self.common {
-                bundle.look_along(stretches);
-            }
-            if bundle.begin(simd, self.tile, (self.start, self.sight)) {
-                bundle.rays.at(simd, &bundle.t, row_of(&mut coordinates, count));
-                open[count] = number;
-                count += 1;
-            }
-        }
-        self.points.truncate(count);
-        (open, count)
-    }
-}
-
-impl WithSimd for Pursuit<'_> {
-    type Output = Taken;
-
-    /// Pursues all rays until they are free, hit or lost.
-    #[inline(always)]
-    fn with_simd<S: Simd>(mut self, simd: S) -> Taken {
-        let (mut open, mut count) = self.begin(simd);
-        let Self { tile, start, bundles, sight, slopes, mut last, points, scratch, .. } = self;
-        let mut taken = Taken::default();
-        // Where the model is as good as what is wanted there is nothing to come nearer to.
-        let mut need = if start.uncertainty() <= sight.tolerance { Need::Last } else { Need::Slopes };
-        let [mut is_first, mut is_first_look] = [true; 2];
-        for _ in 0..STEPS {
-            if count == 0 {
-                break;
-            }
-            let (rows, mut coordinates) = match (need, &last) {
-                (Need::Slopes, _) => {
-                    match tile.direction() {
-                        Some(direction) => points.aim(direction),
-                        None => points.aim_each(open.iter().map(|number| &bundles[*number].rays.directions)),
-                    }
-                    points.slopes(slopes, scratch)
-                }
-                (_, Last::Value(kernel)) => points.evaluate(*kernel, scratch, 1),
-                (_, Last::Gradient(kernel, _)) => points.evaluate(*kernel, scratch, 4),
-            };
-            *(if need == Need::Slopes { &mut taken.slopes } else { &mut taken.last }) += count * ROW;
-            let (mut kept, mut far) = (0, 0);
-            for place in 0..count {
-                let number = open[place];
-                let bundle = &mut bundles[number];
-                let next = match need {
-                    Need::Slopes => {
-                        bundle.approach(simd, [&rows[place], &rows[count + place]], (sight, is_first))
-                    }
-                    _ => bundle.conclude(simd, &rows[place], (sight, is_first_look)),
-                };
-                if let (Need::Last, Last::Gradient(_, normals)) = (need, &mut last) {
-                    let gradients = [1, 2, 3].map(|axis| &rows[axis * count + place]);
-                    bundle.put_normals(simd, (gradients, sight.tolerance), normals);
-                }
-                if next != Need::Nothing {
-                    bundle.rays.at(simd, &bundle.t, row_of(&mut coordinates, kept));
-                    open[kept] = number;
-                    kept += 1;
-                    far += usize::from(next == Need::Slopes);
-                }
-            }
-            is_first &= need != Need::Slopes;
-            is_first_look &= need == Need::Slopes;
-            need = if 2 * far > kept { Need::Slopes } else { Need::Last };
-            count = kept;
-            points.truncate(count);
-        }
-        taken
-    }
 }
 
 #[cfg(test)]

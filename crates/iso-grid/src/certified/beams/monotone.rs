@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use super::beam::Beam;
-use super::bundle::{Bundle, Last, Pursuit, Sight};
+use super::bundle::{Bundle, Sight};
 use super::cuts::Cut;
 use super::form::{Form, ROUNDING};
 use super::open_rays::together;
+use super::pursuit::{Last, Pursuit};
 use super::rounding::Rounding;
 use super::sheaf::{Sheaf, Start};
 use super::subdivision::{Part, SMALLEST, Subdivision};
@@ -162,9 +163,9 @@ impl Subdivision<'_> {
         }
     }
 
-    /// Follows the rays of no more than [`AT_ONCE`](super::bundle::AT_ONCE) bundles.
+    /// Follows the rays of no more than [`AT_ONCE`](super::pursuit::AT_ONCE) bundles.
     fn pursue_bundles(&mut self, bundles: &mut [Bundle], part: &Part, (start, sight): (&Start<'_>, &Sight)) {
-        let kernels = part.kernels;
+        let (kernels, area) = (part.kernels, self.beam(part.beam).area);
         let common = part.is_inside.then(|| part.stretches());
         let Workspace { arch, point_rows, scratch, counters, .. } = &mut *self.workspace;
         let of_part = &self.kernels[kernels as usize];
@@ -176,8 +177,18 @@ impl Subdivision<'_> {
         };
         let slopes = of_part.over_points(Kernel::Slopes);
         let (tile, points) = (&self.tile, point_rows);
-        let taken =
-            arch.dispatch(Pursuit { tile, start, bundles, common, sight, slopes, last, points, scratch });
+        let taken = arch.dispatch(Pursuit {
+            tile,
+            area,
+            start,
+            bundles,
+            common,
+            sight,
+            slopes,
+            last,
+            points,
+            scratch,
+        });
         counters.trace_evaluations += (taken.slopes + taken.last) as u64;
         if self.normals.is_some() {
             counters.gradient_evaluations += taken.last as u64;

@@ -4,10 +4,10 @@ use iso_expr::{BatchKernel, Scratch};
 use pulp::{Simd, WithSimd};
 
 use super::bows::Bow;
-use super::bundle::AT_ONCE;
 use super::course::{Course, ways};
 use super::form::ROUNDING;
 use super::packet::Packet;
+use super::pursuit::AT_ONCE;
 use super::subdivision::Subdivision;
 use crate::lanes::{Lanes, Mask, Row, parts};
 use crate::point_rows::{PointRows, row_of};

@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use pulp::Simd;
 
-use super::bundle::{AT_ONCE, Bundle};
+use super::bundle::Bundle;
 use super::form::Model;
 use super::pixels::state;
+use super::pursuit::AT_ONCE;
 use crate::Span;
 use crate::area::Area;
 use crate::lanes::{Lanes, ROW};
@@ -58,6 +59,25 @@ impl<'a> Start<'a> {
         self.model.uncertainty
     }
 
+    /// The stretch, and as much again before and behind it.
+    pub(super) fn around(&self) -> Span {
+        let Span { start, end } = self.stretch;
+        Span { start: start - (end - start), end: end + (end - start) }
+    }
+
+    /// The columns that the model has roots of in the stretch, on both sides of a row; `None` where there is no end to them.
+    pub(super) fn band(&self, row: f64) -> Option<Band> {
+        let columns = self.columns?;
+        let Span { start, end } = self.stretch;
+        let Model { t, by_row, .. } = *self.model;
+        let there = t + (row - self.middle.1) * by_row;
+        Some(Band {
+            middle: self.middle.0 + columns * (0.5 * (start + end) - there),
+            radius: columns.abs() * 0.5 * (end - start),
+            shear: -columns * by_row,
+        })
+    }
+
     /// Which of so many neighbours in a row, the first in this column and row, may have a root in the stretch: all that may, and few others.
     #[inline(always)]
     pub(super) fn likely(&self, first: (usize, usize), count: usize) -> Range<usize> {
@@ -96,6 +116,17 @@ impl<'a> Start<'a> {
         let (from, to) = if one < other { (one, other) } else { (other, one) };
         whole(from + (1.0 - ROUNDED), count)..whole(to + (1.0 + ROUNDED), count)
     }
+}
+
+/// Columns around a row.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Band {
+    /// The middle one in that row.
+    pub(super) middle: f64,
+    /// How far others are from it at most.
+    pub(super) radius: f64,
+    /// How many columns the middle moves from row to row.
+    pub(super) shear: f64,
 }
 
 /// What is left of a number without its fraction, from 0 to `most`; of a whole number it may be one less.

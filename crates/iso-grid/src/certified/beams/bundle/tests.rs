@@ -1,13 +1,16 @@
 //! Rays that look for spheres, and planes.
 
 use glam::DVec3;
-use iso_expr::{Ast, Engine, Interpreter};
-use pulp::{Arch, Scalar};
+use iso_expr::{Ast, Engine, Interpreter, Scratch};
+use pulp::{Arch, Scalar, WithSimd};
 
 use super::*;
 use crate::Raster;
+use crate::area::Area;
 use crate::certified::beams::form::Model;
+use crate::certified::beams::pursuit::{Last, Pursuit, Taken};
 use crate::certified::beams::sheaf::{Sheaf, Start};
+use crate::point_rows::PointRows;
 
 /// Where the ray of a place meets the sphere.
 fn root_of(place: usize) -> f64 {
@@ -64,6 +67,7 @@ fn ends_on_a_sphere(with_normals: bool, run: impl Fn(Pursuit<'_>) -> Taken) -> E
     let (mut points, mut scratch) = (PointRows::default(), Scratch::default());
     let taken = run(Pursuit {
         tile: &tile,
+        area: Area { column: 0, row: 0, width: 8, height: 8 },
         start: &start,
         bundles,
         common: None,
@@ -233,6 +237,7 @@ fn the_last_look_may_be_the_first() {
         (bundle.value, bundle.inverse, bundle.step) = ([before; ROW], [before; ROW], [before; ROW]);
         let taken = Pursuit {
             tile: &tile,
+            area: Area { column: 0, row: 0, width: 1, height: 1 },
             start: &start,
             bundles,
             common: Some([wanted, reach]),
