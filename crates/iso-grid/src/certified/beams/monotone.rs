@@ -24,7 +24,7 @@ const SMALL: usize = 8;
 const LARGEST_COUNTED: usize = 16;
 
 /// A larger beam is cut when more rays are likely to be followed in vain.
-const DOUBTFUL: u32 = 16;
+const DOUBTFUL: u32 = 32;
 
 /// Small beams are looked at anew where roots may lie on less than this share of what was looked at.
 const SHORT: f64 = 0.5;
