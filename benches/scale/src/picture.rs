@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use iso_expr::{Engine, Interpreter, Program};
-use iso_grid::{Certified, Kernel, Region, Surface};
+use iso_grid::{Accuracy, Certified, Kernel, Method, Region, Surface};
 use iso_jit::Jit;
 use iso_render::{
     Camera, Layers, Look, Plan, Projection, Scene, Shading, Size, Smoothing, View, Wanted, render,
@@ -44,7 +44,7 @@ impl Subject {
     ) -> Result<Self, Box<dyn Error>> {
         let region = Region::new(DVec3::splat(-radius), DVec3::splat(radius))?;
         let surface = Surface::new(engine, program.clone());
-        let tracer = Certified::new(&surface, region)?;
+        let tracer = Certified::new(&surface, region)?.with_accuracy(Accuracy::Pixels);
         surface.by_signs().over_points(Kernel::Gradients)?;
         Ok(Self { surface, tracer, region, radius, preparation: start.elapsed().as_secs_f64() })
     }
@@ -59,7 +59,7 @@ impl Subject {
         let camera = Camera::new(View::DEFAULT, projection, &self.region, size)?;
         let plan = Plan::new(&Wanted {
             program: self.surface.program(),
-            method: iso_grid::Method::CERTIFIED,
+            method: Method::Certified { accuracy: Accuracy::Pixels },
             has_parameters: false,
             projection: Some(projection),
             box_is_given: true,
