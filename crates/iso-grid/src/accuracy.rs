@@ -5,6 +5,7 @@ use std::fmt;
 use crate::Span;
 
 /// How narrowly the [certified](crate::Certified) method encloses roots. Whatever it is, what is said stays proven; wider enclosures take fewer steps.
+/// Normals are found within that width of the root.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Accuracy {
     /// As a picture needs it: of neighbouring rays of a [raster](crate::Raster), which are proven together, to a
