@@ -271,6 +271,32 @@ mod tests {
     }
 
     #[test]
+    fn neighbours_are_as_far_apart_as_is_said() {
+        let direction = DVec3::new(0.0, 0.0, 0.5);
+        let [right, down] = [0.02 * DVec3::X, 0.01 * DVec3::Y];
+        for t in [1.0, 4.0] {
+            for raster in [
+                Raster::Parallel { middle: DVec3::ZERO, right, down, direction },
+                Raster::Parallel { middle: DVec3::ZERO, right: down, down: right, direction },
+                Raster::Spreading { eye: DVec3::ZERO, forward: DVec3::Z, right, down },
+            ] {
+                let tile = Tile::of(&raster, [0.0, 0.0], 2, 2);
+                let [here, beside, below] =
+                    [(0, 0), (1, 0), (0, 1)].map(|(column, row)| tile.ray(column, row));
+                let nearest = here.at(t).distance(beside.at(t)).min(here.at(t).distance(below.at(t)));
+                let expected = nearest / here.direction.length();
+                assert!(
+                    (tile.spacing(t) / expected - 1.0).abs() < 1e-3,
+                    "{} for {expected}",
+                    tile.spacing(t)
+                );
+            }
+        }
+        let alone = [Ray { origin: DVec3::ZERO, direction }; 2];
+        assert_eq!(Tile::listed(&alone, 2).spacing(1.0), 0.0);
+    }
+
+    #[test]
     fn rays_side_by_side_are_those_one_by_one() {
         let mut random = Random::new(11);
         for round in 0..300 {

@@ -301,6 +301,25 @@ mod tests {
     }
 
     #[test]
+    fn bands_are_where_the_model_has_roots_in_the_stretch() {
+        let mut random = Random::new(8);
+        for _ in 0..500 {
+            let [t, by_column, by_row] = [(); 3].map(|()| random.between(0.1, 5.0));
+            let model = Model { t, by_column, by_row: by_row - 2.5, uncertainty: 0.1 };
+            let stretch = Span { start: 5.0, end: random.between(5.1, 6.0) };
+            let start = Start::new(&model, (20.5, 3.5), stretch);
+            let [row, other] = [(); 2].map(|()| random.between(0.0, 60.0));
+            let Band { middle, radius, shear } = start.band(row).unwrap();
+            let there = middle + shear * (other - row);
+            for (column, expected) in [(there - radius, stretch.start), (there + radius, stretch.end)] {
+                assert!((start.at(column, other) - expected).abs() < 1e-10);
+            }
+        }
+        let flat = Model { t: 5.5, by_column: 0.0, by_row: 1.0, uncertainty: 0.1 };
+        assert!(Start::new(&flat, (3.5, 5.0), Span { start: 5.0, end: 6.0 }).band(2.0).is_none());
+    }
+
+    #[test]
     fn where_the_model_has_no_numbers_all_rays_are_likely() {
         let stretch = Span { start: 5.0, end: 6.0 };
         for [t, by_column, by_row] in [
