@@ -6,17 +6,20 @@ use std::time::Instant;
 
 use glam::DVec3;
 use iso_expr::{Engine, Interpreter, Program};
-use iso_grid::{Accuracy, Certified, Kernel, Method, Region, Surface};
+use iso_grid::{Accuracy, Kernel, Method, Region, Surface, Tracer};
 use iso_jit::Jit;
 use iso_render::{
     Camera, Layers, Look, Plan, Projection, Scene, Shading, Size, Smoothing, View, Wanted, render,
 };
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+/// How rays are followed, as where colours are all that is written.
+const METHOD: Method = Method::Certified { accuracy: Accuracy::Pixels };
+
 /// A surface with everything prepared that can be before its picture is drawn.
 pub struct Subject {
     surface: Surface,
-    tracer: Certified,
+    tracer: Box<dyn Tracer>,
     region: Region,
     radius: f64,
     /// Seconds that preparing took.
@@ -44,7 +47,7 @@ impl Subject {
     ) -> Result<Self, Box<dyn Error>> {
         let region = Region::new(DVec3::splat(-radius), DVec3::splat(radius))?;
         let surface = Surface::new(engine, program.clone());
-        let tracer = Certified::new(&surface, region)?.with_accuracy(Accuracy::Pixels);
+        let tracer = METHOD.prepare(&surface, region)?;
         surface.by_signs().over_points(Kernel::Gradients)?;
         Ok(Self { surface, tracer, region, radius, preparation: start.elapsed().as_secs_f64() })
     }
@@ -59,7 +62,7 @@ impl Subject {
         let camera = Camera::new(View::DEFAULT, projection, &self.region, size)?;
         let plan = Plan::new(&Wanted {
             program: self.surface.program(),
-            method: Method::Certified { accuracy: Accuracy::Pixels },
+            method: METHOD,
             has_parameters: false,
             projection: Some(projection),
             box_is_given: true,
@@ -70,7 +73,7 @@ impl Subject {
         let scene = Scene {
             plan: &plan,
             surface: &self.surface,
-            tracer: &self.tracer,
+            tracer: &*self.tracer,
             camera: &camera,
             shading: &shading,
         };

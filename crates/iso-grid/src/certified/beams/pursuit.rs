@@ -80,6 +80,9 @@ const MANY: usize = 12;
 /// How many times more narrowly the roots are found that a cubic is laid through.
 const FINER: f64 = 64.0;
 
+/// In so many steps these are found, or the part's slopes say little there.
+const ROUNDS: usize = 3;
+
 /// Rays meet a part in a band across its columns where that is narrower than this share of them.
 const BAND: f64 = 0.7;
 
@@ -99,7 +102,7 @@ impl Pursuit<'_> {
         (across.min(along) >= 1.0).then_some(patch)
     }
 
-    /// About where the roots of all rays are, by those of a few.
+    /// About where the roots of all rays are, by those of a few; `None` where the model tells that as well.
     #[inline(always)]
     fn feel<S: Simd>(&mut self, simd: S, taken: &mut Taken) -> Option<Cubic> {
         let guess = Guess::Linear(self.start);
@@ -113,7 +116,7 @@ impl Pursuit<'_> {
             Bundle::feelers(simd, (self.tile, [&columns, &rows]), stretch, (&guess, sight))
         });
         let mut is_first = true;
-        for _ in 0..STEPS {
+        for _ in 0..ROUNDS {
             let mut coordinates = self.points.replace(2);
             first.rays.at(simd, &first.t, row_of(&mut coordinates, 0));
             second.rays.at(simd, &second.t, row_of(&mut coordinates, 1));
@@ -129,7 +132,7 @@ impl Pursuit<'_> {
             }
             is_first = false;
         }
-        Some(patch.cubic(simd, [&first.t, &second.t])).filter(|cubic| cubic.rest.is_finite())
+        Some(patch.cubic(simd, [&first.t, &second.t])).filter(|cubic| cubic.rest < self.start.uncertainty())
     }
 
     /// Begins with all bundles, and puts the points at which F is to be taken first; says which bundles have open rays, and how many these are.
